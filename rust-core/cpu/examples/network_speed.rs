@@ -1,0 +1,59 @@
+//! Times the deformation stage on the sample scene and prints one JSON object: milliseconds per
+//! frame of all splats, and of masked frames.
+
+#[path = "../tests/support/sample_scene.rs"]
+mod sample_scene;
+
+use std::time::Instant;
+
+use trapeze_cpu::deform::{DeformationOptions, DeformationStage};
+
+const FRAMES: usize = 40;
+
+/// (median, 10th, 90th percentile) of the milliseconds of a frame.
+fn time_frames(stage: &mut DeformationStage, dynamic: Option<&[u32]>) -> [f64; 3] {
+    stage.evaluate(0.5, dynamic);
+    let mut times: Vec<f64> = (0..FRAMES)
+        .map(|frame| {
+            let start = Instant::now();
+            stage.evaluate(frame as f32 / FRAMES as f32, dynamic);
+            start.elapsed().as_secs_f64() * 1e3
+        })
+        .collect();
+    times.sort_by(f64::total_cmp);
+    [times[FRAMES / 2], times[FRAMES / 10], times[FRAMES * 9 / 10]]
+}
+
+fn print(name: &str, splats: usize, [median, p10, p90]: [f64; 3]) {
+    println!(
+        "  {{\"case\": \"{name}\", \"splats\": {splats}, \"median_ms\": {median:.2}, \
+         \"p10_ms\": {p10:.2}, \"p90_ms\": {p90:.2}}},"
+    );
+}
+
+fn main() {
+    let Some(folder) = sample_scene::folder() else { return };
+    let scene = sample_scene::load(&folder);
+    let n = scene.len();
+    let mask = sample_scene::f32s(&std::fs::read(folder.join("mask.bin")).unwrap());
+    let mut by_motion: Vec<u32> = (0..n as u32).collect();
+    by_motion.sort_by(|&a, &b| mask[b as usize].total_cmp(&mask[a as usize]));
+
+    println!("[");
+    let start = Instant::now();
+    let mut stage = DeformationStage::new(&scene);
+    print("setup", n, [start.elapsed().as_secs_f64() * 1e3; 3]);
+    print("all", n, time_frames(&mut stage, None));
+    for percent in [5, 15, 50] {
+        let dynamic = &by_motion[..n * percent / 100];
+        print(
+            &format!("masked {percent} %"),
+            dynamic.len(),
+            time_frames(&mut stage, Some(dynamic)),
+        );
+    }
+    let options = DeformationOptions { position_term_budget: 0, ..DeformationOptions::default() };
+    let mut stage = DeformationStage::with_options(&scene, options);
+    print("all, nothing kept", n, time_frames(&mut stage, None));
+    println!("  {{\"threads\": {}}}\n]", rayon::current_num_threads());
+}

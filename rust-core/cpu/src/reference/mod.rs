@@ -1,0 +1,3 @@
+//! The executable specification: every stage in f64.
+
+pub mod deform;
