@@ -1,0 +1,230 @@
+//! Projecting all splats of a frame.
+
+use glam::DVec3;
+use rayon::prelude::*;
+use trapeze_scene::{Camera, ColorSource, FrameSettings, Scene, ShDegree, sigmoid};
+
+use super::ProjectedSplat;
+use super::color::{flat_color, limit_channel, motion_reference, sh_basis_f32, sh_color};
+use crate::deform::Deformed;
+use crate::reference::{ALPHA_MIN, JACOBIAN_MARGIN, NEAR_PLANE};
+
+/// Splats that one task projects; fixed, so that the order of the output never depends on the
+/// number of threads.
+const CHUNK: usize = 4096;
+
+/// What the projection needs of a scene and does not change with the frame.
+#[derive(Clone, Debug)]
+pub struct ProjectionStage {
+    /// Opacity of each splat, 0–1; 0 for NaN logits.
+    opacities: Vec<f32>,
+    motion_reference: f32,
+    sh_degree: ShDegree,
+}
+
+impl ProjectionStage {
+    /// Prepares a scene: opacities, and the SH bands that are not zero everywhere.
+    #[must_use]
+    pub fn new(scene: &Scene) -> Self {
+        Self {
+            opacities: scene
+                .splats
+                .opacity_logits
+                .iter()
+                .map(|&logit| sigmoid(f64::from(logit)) as f32)
+                .collect(),
+            motion_reference: motion_reference(scene),
+            sh_degree: scene.splats.used_sh_degree(),
+        }
+    }
+}
+
+/// The camera in single precision, arranged so that nothing large is subtracted from something
+/// large: the position is split into two floats, and splats are taken relative to the first part.
+#[derive(Clone, Copy, Debug)]
+struct View {
+    rotation: [[f32; 3]; 3],
+    centre_high: [f32; 3],
+    centre_low: [f32; 3],
+    focal: [f32; 2],
+    principal: [f32; 2],
+    slope_min: [f32; 2],
+    slope_max: [f32; 2],
+    /// Pixel bounds of what is drawn: splats whose box lies outside are dropped.
+    image: [f32; 2],
+}
+
+impl View {
+    fn new(camera: &Camera) -> Self {
+        let centre = camera.centre();
+        let high = centre.to_array().map(|v| v as f32);
+        let low = (centre - DVec3::from(high.map(f64::from))).to_array().map(|v| v as f32);
+        let size = [f64::from(camera.width), f64::from(camera.height)];
+        let focal = [camera.fx, camera.fy];
+        let principal = [camera.cx, camera.cy];
+        let margin: [f64; 2] =
+            std::array::from_fn(|i| JACOBIAN_MARGIN * size[i] / (2.0 * focal[i]));
+        Self {
+            rotation: camera
+                .rotation()
+                .transpose()
+                .to_cols_array_2d()
+                .map(|row| row.map(|v| v as f32)),
+            centre_high: high,
+            centre_low: low,
+            focal: focal.map(|v| v as f32),
+            principal: principal.map(|v| v as f32),
+            slope_min: std::array::from_fn(|i| -(principal[i] / focal[i] + margin[i]) as f32),
+            slope_max: std::array::from_fn(|i| {
+                ((size[i] - principal[i]) / focal[i] + margin[i]) as f32
+            }),
+            image: size.map(|v| v as f32),
+        }
+    }
+}
+
+/// Projects the visible splats of a frame into `out`, in the order of the scene. `camera` is
+/// relative to the scene's origin.
+pub fn project(
+    scene: &Scene,
+    stage: &ProjectionStage,
+    deformed: &Deformed,
+    camera: &Camera,
+    settings: &FrameSettings,
+    out: &mut Vec<ProjectedSplat>,
+) {
+    let view = View::new(camera);
+    let input = Input { scene, stage, deformed, settings };
+    let chunks: Vec<Vec<ProjectedSplat>> = (0..scene.len().div_ceil(CHUNK))
+        .into_par_iter()
+        .map(|chunk| {
+            let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(scene.len());
+            range.filter_map(|i| input.project(i, &view)).collect()
+        })
+        .collect();
+    out.clear();
+    out.reserve(chunks.iter().map(Vec::len).sum());
+    chunks.iter().for_each(|chunk| out.extend_from_slice(chunk));
+}
+
+struct Input<'a> {
+    scene: &'a Scene,
+    stage: &'a ProjectionStage,
+    deformed: &'a Deformed,
+    settings: &'a FrameSettings,
+}
+
+impl Input<'_> {
+    /// The plain twin of this function is `Projection::project` of the f64 reference.
+    #[inline(always)]
+    fn project(&self, i: usize, view: &View) -> Option<ProjectedSplat> {
+        let opacity = self.stage.opacities[i];
+        if opacity < ALPHA_MIN as f32 || !self.is_shown(i) {
+            return None;
+        }
+        let position = self.deformed.positions[i];
+        let offset: [f32; 3] =
+            std::array::from_fn(|c| (position[c] - view.centre_high[c]) - view.centre_low[c]);
+        let p = multiply(&view.rotation, offset);
+        // False for NaN.
+        if !(p[2] > NEAR_PLANE as f32) {
+            return None;
+        }
+        let inverse_z = 1.0 / p[2];
+        let slope = [p[0] * inverse_z, p[1] * inverse_z];
+        let centre: [f32; 2] =
+            std::array::from_fn(|c| view.focal[c] * slope[c] + view.principal[c]);
+        let [mx, my] = self.image_factor(i, view, slope, inverse_z);
+        let mut splat = ProjectedSplat::from_factor(centre, mx, my, opacity)?;
+        let inside = splat.x + splat.half_width > 0.0
+            && splat.x - splat.half_width < view.image[0]
+            && splat.y + splat.half_height > 0.0
+            && splat.y - splat.half_height < view.image[1];
+        if !inside {
+            return None;
+        }
+        splat.depth = p[2];
+        splat.index = i as u32;
+        splat.color = self.color(i, offset);
+        Some(splat)
+    }
+
+    fn is_shown(&self, i: usize) -> bool {
+        match &self.scene.clusters {
+            Some(clusters) => self.settings.selection.shows(clusters.labels[i]),
+            None => true,
+        }
+    }
+
+    /// The rows of M = J W R S, pixels.
+    #[inline(always)]
+    fn image_factor(
+        &self,
+        i: usize,
+        view: &View,
+        slope: [f32; 2],
+        inverse_z: f32,
+    ) -> [[f32; 3]; 2] {
+        let scale = self.deformed.scales[i];
+        let rotation = rotation_matrix(self.deformed.rotations[i]);
+        let w = &view.rotation;
+        std::array::from_fn(|axis| {
+            let limited = slope[axis].clamp(view.slope_min[axis], view.slope_max[axis]);
+            let gain = view.focal[axis] * inverse_z;
+            // Row of J W: J has f/z on the axis and −f·slope/z on z.
+            let row: [f32; 3] = std::array::from_fn(|c| gain * (w[axis][c] - limited * w[2][c]));
+            std::array::from_fn(|column| {
+                let dot = row[0] * rotation[0][column]
+                    + row[1] * rotation[1][column]
+                    + row[2] * rotation[2][column];
+                dot * scale[column]
+            })
+        })
+    }
+
+    #[inline(always)]
+    fn color(&self, i: usize, to_splat: [f32; 3]) -> [f32; 3] {
+        let source = self.settings.color_source;
+        if source != ColorSource::SphericalHarmonics {
+            return flat_color(self.scene, source, i, self.stage.motion_reference);
+        }
+        let splats = &self.scene.splats;
+        let degree = self.stage.sh_degree.min(self.settings.max_sh_degree);
+        let basis = sh_basis_f32(direction(to_splat), degree);
+        let rest = &splats.sh_rest_of(i)[..degree.rest_coefficients() * 3];
+        sh_color(&basis, splats.sh_dc[i], rest).map(limit_channel)
+    }
+}
+
+/// v / ‖v‖, or z where v has no direction.
+#[inline(always)]
+fn direction(v: [f32; 3]) -> [f32; 3] {
+    let length_squared = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    if length_squared > f32::MIN_POSITIVE && length_squared < f32::MAX {
+        let inverse = 1.0 / length_squared.sqrt();
+        return v.map(|c| c * inverse);
+    }
+    // Squares out of range: divide by the largest component first.
+    let largest = v.iter().fold(0.0f32, |m, c| m.max(c.abs()));
+    if !(largest > 0.0 && largest.is_finite()) {
+        return [0.0, 0.0, 1.0];
+    }
+    let v = v.map(|c| c / largest);
+    let inverse = 1.0 / (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+    v.map(|c| c * inverse)
+}
+
+#[inline(always)]
+fn multiply(m: &[[f32; 3]; 3], v: [f32; 3]) -> [f32; 3] {
+    std::array::from_fn(|r| m[r][0] * v[0] + m[r][1] * v[1] + m[r][2] * v[2])
+}
+
+/// Row-major matrix of a quaternion (w, x, y, z), by the formula for unit quaternions.
+#[inline(always)]
+fn rotation_matrix([w, x, y, z]: [f32; 4]) -> [[f32; 3]; 3] {
+    [
+        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+        [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
+        [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
+    ]
+}

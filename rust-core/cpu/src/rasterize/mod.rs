@@ -1,0 +1,7 @@
+//! Stage 5: blending. Front to back, one tile at a time, sixteen pixels of a row at a time.
+
+mod exp2;
+mod stage;
+mod tile;
+
+pub use stage::{Outputs, Target, rasterize};
