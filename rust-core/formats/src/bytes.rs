@@ -18,6 +18,11 @@ impl<'a> ByteReader<'a> {
         self.rest.len()
     }
 
+    /// The bytes that have not been read, without reading them.
+    pub(crate) fn rest(&self) -> &'a [u8] {
+        self.rest
+    }
+
     /// The next `count` bytes.
     pub(crate) fn take(&mut self, count: usize, field: &str) -> Result<&'a [u8], ParseError> {
         let (taken, rest) =
