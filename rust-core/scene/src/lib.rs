@@ -27,6 +27,7 @@
 mod bounds;
 mod camera;
 mod clusters;
+mod comparison;
 pub mod deformation;
 mod error;
 mod frame;
@@ -40,6 +41,7 @@ mod splats;
 pub use bounds::{Bounds, Orbit};
 pub use camera::{Camera, MAX_IMAGE_SIDE};
 pub use clusters::{Cluster, Clusters};
+pub use comparison::{ImageError, psnr};
 pub use deformation::DeformationNetwork;
 pub use error::{ArchitectureError, SceneError};
 pub use frame::{ColorSource, Frame, FrameSettings, NO_SPLAT, motion_heat};

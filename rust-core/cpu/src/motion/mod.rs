@@ -1,5 +1,7 @@
 //! How far each splat ever gets from where it starts.
 
+mod recommend;
+
 use std::ops::ControlFlow;
 
 use glam::{DMat3, DQuat, DVec3};
@@ -7,6 +9,10 @@ use rayon::prelude::*;
 use trapeze_scene::{Clusters, Motion, MotionMeasure, Scene};
 
 use crate::deform::{DeformationStage, Deformed, SplatPose};
+
+pub use recommend::{
+    RECOMMENDED_MIN_PSNR, ShareOutcome, compare_static_shares, recommended_percentile,
+};
 
 /// What is measured, and when.
 #[derive(Clone, Debug, PartialEq)]
