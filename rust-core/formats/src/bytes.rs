@@ -46,6 +46,15 @@ impl<'a> ByteReader<'a> {
         }
     }
 
+    /// The bytes before the next newline, which is skipped.
+    pub(crate) fn take_line(&mut self, field: &str) -> Result<&'a [u8], ParseError> {
+        let length = self.rest.iter().position(|&byte| byte == b'\n');
+        let length = length.ok_or_else(|| self.truncated(self.rest.len() as u64 + 1, field))?;
+        let line = self.take(length, field)?;
+        self.rest = &self.rest[1..];
+        Ok(line)
+    }
+
     pub(crate) fn u8(&mut self, field: &str) -> Result<u8, ParseError> {
         Ok(self.array::<1>(field)?[0])
     }

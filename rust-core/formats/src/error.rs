@@ -30,6 +30,14 @@ pub enum ParseError {
         /// What was there, shortened to be printable on one line.
         found: String,
     },
+    /// A JSON value is missing or of another type than its field.
+    #[error("{field}: {message}")]
+    Json {
+        /// Path of the field in the document, such as `[3].camera.fx`.
+        field: String,
+        /// What was expected and found, and the line.
+        message: String,
+    },
     /// The parts of the file do not describe one scene.
     #[error(transparent)]
     Scene(#[from] SceneError),
@@ -42,23 +50,44 @@ pub enum ParseError {
 }
 
 impl ParseError {
-    /// A value that is not what the field allows. Control characters and length of `found` are
-    /// tamed, so that the message stays one short line whatever the file holds.
+    /// A value that is not what the field allows. Control characters and lengths are tamed, so
+    /// that the message stays one short line whatever the file holds: names of fields may come
+    /// from the file as well.
     pub fn value(
         field: impl Into<String>,
         expected: impl Into<String>,
         found: impl std::fmt::Display,
     ) -> Self {
-        Self::Value { field: field.into(), expected: expected.into(), found: printable(found) }
+        Self::Value {
+            field: printable(field.into(), 100),
+            expected: expected.into(),
+            found: printable(found, 60),
+        }
+    }
+
+    /// A JSON field that does not hold what it should, with the parser's own words.
+    pub(crate) fn json(field: impl std::fmt::Display, message: impl std::fmt::Display) -> Self {
+        Self::Json { field: printable(field, 60), message: printable(message, 120) }
+    }
+
+    /// The same error of a field inside `part`, such as `frames[3]`.
+    pub(crate) fn within(mut self, part: &str) -> Self {
+        if let Self::Truncated { field, .. }
+        | Self::Value { field, .. }
+        | Self::Json { field, .. } = &mut self
+        {
+            *field = printable(format!("{part}.{field}"), 120);
+        }
+        self
     }
 }
 
-/// At most 60 characters of `text`, control characters replaced.
-fn printable(text: impl std::fmt::Display) -> String {
+/// At most `limit` characters of `text`, control characters replaced.
+pub(crate) fn printable(text: impl std::fmt::Display, limit: usize) -> String {
     let text = text.to_string();
     let mut short: String =
-        text.chars().take(60).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
-    if text.chars().nth(60).is_some() {
+        text.chars().take(limit).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
+    if text.chars().nth(limit).is_some() {
         short.push('…');
     }
     short
@@ -129,5 +158,7 @@ mod tests {
         let message = ReadError::new("scene.ply", error).to_string();
         assert!(message.starts_with("scene.ply: magic: expected \"ply\", found "), "{message}");
         assert!(!message.contains(['\n', '\u{1b}']) && message.chars().count() < 150, "{message}");
+        let message = ParseError::value("a\nname".repeat(100), "text", 1).to_string();
+        assert!(!message.contains('\n') && message.chars().count() < 150, "{message}");
     }
 }

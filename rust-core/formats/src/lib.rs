@@ -2,13 +2,39 @@
 
 mod atomic_write;
 mod bytes;
+mod camera_json;
+mod cluster_names;
+mod clusters_bin;
 mod error;
+mod json;
+mod mask;
+mod npy;
+mod npz;
 mod open;
 pub mod ply;
 mod quantised;
 mod recentre;
+mod regular_file;
 mod splat_block;
 pub mod splat_file;
+mod torch;
+mod weights_bin;
+mod zip_members;
 
 pub use atomic_write::write_atomically;
+pub use camera_json::{
+    View, parse_camera, parse_views, read_camera, read_views, write_camera, write_views,
+};
+pub use cluster_names::{
+    ClusterNames, apply_cluster_names, parse_cluster_names, read_cluster_names, write_cluster_names,
+};
+pub use clusters_bin::{parse_clusters_bin, read_clusters_bin, write_clusters_bin};
 pub use error::{ParseError, ReadError, WriteError};
+pub use mask::{
+    MaskSettings, parse_mask_bin, parse_mask_json, read_mask_bin, read_mask_json, write_mask_bin,
+    write_mask_json,
+};
+pub use npy::{NpyArray, NpyValues, parse_npy, read_npy, write_npy};
+pub use npz::{parse_npz, read_npz};
+pub use torch::{parse_clusters_pt, parse_deform_pth, read_clusters_pt, read_deform_pth};
+pub use weights_bin::{WEIGHTS_BIN_BYTES, parse_weights_bin, read_weights_bin, write_weights_bin};

@@ -1,10 +1,11 @@
 //! Opening a file for a parser of byte slices.
 
-use std::fs::File;
 use std::io;
 use std::path::Path;
 
 use memmap2::Mmap;
+
+use crate::regular_file::open_regular_file;
 
 /// The content of a file, mapped into memory: a parser touches only what it needs, and the pages
 /// stay the operating system's to reclaim.
@@ -13,10 +14,7 @@ use memmap2::Mmap;
 /// answers an access to the missing part with a signal, for which no program of this kind has a
 /// good answer. Our own writer replaces files by renaming, which leaves old mappings intact.
 pub(crate) fn map(path: &Path) -> io::Result<Mmap> {
-    let file = File::open(path)?;
-    if file.metadata()?.is_dir() {
-        return Err(io::Error::new(io::ErrorKind::IsADirectory, "expected a file, found a folder"));
-    }
+    let (file, _) = open_regular_file(path)?;
     // SAFETY: the mapping is private and read-only, and the bytes are read as plain integers, for
     // which every bit pattern is valid. That the file is not shortened meanwhile is the caller's
     // condition stated above.
