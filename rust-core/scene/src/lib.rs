@@ -20,7 +20,8 @@
 //! CPU and GPU read them with unit stride, and a part that a scene lacks (`None`, or zero SH bands)
 //! occupies nothing.
 //!
-//! This crate depends on none of the others, opens no file and starts no thread. Conventions
+//! This crate depends on none of the others and opens no file; of its functions only the search
+//! for nearest neighbours ([`Neighbours`]) runs on more than the caller's thread. Conventions
 //! (axes, pixel centres, thresholds, orders of blending) are stated in `docs/numerics.md` and
 //! specified by the f64 reference renderer in the `cpu` crate.
 
@@ -29,10 +30,12 @@ mod camera;
 mod clusters;
 mod comparison;
 pub mod deformation;
+pub mod edit;
 mod error;
 mod frame;
 mod memory;
 mod motion;
+mod neighbours;
 mod scene;
 mod selection;
 mod spherical_harmonics;
@@ -47,6 +50,7 @@ pub use error::{ArchitectureError, SceneError};
 pub use frame::{ColorSource, Frame, FrameSettings, NO_SPLAT, motion_heat};
 pub use memory::{GEOMETRY_BYTES_PER_SPLAT, MemoryEstimate};
 pub use motion::{Motion, MotionMeasure, is_dynamic};
+pub use neighbours::{NO_NEIGHBOUR, Neighbours, nearest_neighbour_distances};
 pub use scene::{Features, Scene};
 pub use selection::{ClusterSet, Selection};
 pub use spherical_harmonics::{SH_C0, SH_C1, SH_C2, SH_C3, ShDegree, sh_basis};
