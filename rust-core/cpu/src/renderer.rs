@@ -137,7 +137,12 @@ impl Renderer {
         self.order_splats(camera, settings);
         let start = Instant::now();
         let target = self.target(camera, settings);
-        let bands = bin_bands(&self.sorted, camera.height, self.options.tile);
+        let bands = bin_bands(
+            self.options.level,
+            &self.sorted,
+            (camera.width, camera.height),
+            self.options.tile,
+        );
         self.times.bin = start.elapsed();
         let start = Instant::now();
         rasterize(&self.sorted, &bands, &target, frame);
@@ -171,7 +176,7 @@ impl Renderer {
             .collect();
         let outputs = Outputs { depth: true, top_contributor: true };
         let target = Target { width: 1, height: 1, outputs, ..self.target(camera, settings) };
-        let bands = bin_bands(&moved, 1, self.options.tile);
+        let bands = bin_bands(self.options.level, &moved, (1, 1), self.options.tile);
         let mut frame = Frame::default();
         rasterize(&moved, &bands, &target, &mut frame);
         let splat = frame.top_contributor[0];

@@ -1,5 +1,7 @@
 //! Splats by band.
 
+use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd_macros::simd;
 use rayon::prelude::*;
 
 use super::TileSize;
@@ -8,38 +10,96 @@ use crate::project::ProjectedSplat;
 /// Splats that one task bins: fixed, so that lists never depend on the number of threads.
 const CHUNK: usize = 8192;
 
-/// For every band of the image, the splats that may touch it, in drawing order.
+/// A splat in a band.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BandEntry {
+    /// Position of the splat in drawing order.
+    pub rank: u32,
+    /// First tile of the band that it touches.
+    pub first_tile: u16,
+    /// Last tile that it touches.
+    pub last_tile: u16,
+}
+
+/// For every band of the image, the splats that touch it, in drawing order.
 #[derive(Debug, Default)]
 pub struct BandLists {
-    /// `chunks[c][b]`: ranks (positions in drawing order) of the splats of chunk c in band b.
-    chunks: Vec<Vec<Vec<u32>>>,
+    /// `chunks[c][b]`: the splats of chunk c in band b.
+    chunks: Vec<Vec<Vec<BandEntry>>>,
 }
 
 impl BandLists {
-    /// Ranks of the splats in a band, ascending.
-    pub fn band(&self, band: usize) -> impl Iterator<Item = u32> + '_ {
+    /// The splats in a band, ascending in rank.
+    pub fn band(&self, band: usize) -> impl Iterator<Item = BandEntry> + '_ {
         self.chunks.iter().flat_map(move |bands| bands[band].iter().copied())
     }
 }
 
-/// Sorts `splats`, which are in drawing order, into the bands of an image `height` pixels high.
+/// Sorts `splats`, which are in drawing order, into the bands of an image of `size` (width, height).
 #[must_use]
-pub fn bin_bands(splats: &[ProjectedSplat], height: u32, tile: TileSize) -> BandLists {
-    let bands = height.div_ceil(tile.height()) as usize;
+pub fn bin_bands(
+    level: Level,
+    splats: &[ProjectedSplat],
+    size: (u32, u32),
+    tile: TileSize,
+) -> BandLists {
     let chunks = splats
         .par_chunks(CHUNK)
         .enumerate()
         .map(|(chunk, splats)| {
-            let mut lists = vec![Vec::new(); bands];
-            for (rank, splat) in (chunk * CHUNK..).zip(splats) {
-                for band in bands_of(splat, bands, tile) {
-                    lists[band].push(rank as u32);
-                }
-            }
-            lists
+            dispatch!(level, simd => bin_chunk(simd, splats, (chunk * CHUNK) as u32, size, tile))
         })
         .collect();
     BandLists { chunks }
+}
+
+/// Bins consecutive splats, the first of which has rank `first_rank`. Scalar code, compiled for
+/// each SIMD level.
+#[simd]
+fn bin_chunk<S: Simd>(
+    _simd: S,
+    splats: &[ProjectedSplat],
+    first_rank: u32,
+    (width, height): (u32, u32),
+    tile: TileSize,
+) -> Vec<Vec<BandEntry>> {
+    let bands = height.div_ceil(tile.height()) as usize;
+    let mut lists = vec![Vec::new(); bands];
+    for (rank, splat) in (first_rank..).zip(splats) {
+        for band in bands_of(splat, bands, tile) {
+            let y_min = (band as u32 * tile.height()) as f32 + 0.5;
+            let y_max = y_min + (tile.height() - 1) as f32;
+            if let Some((first_tile, last_tile)) = tiles_of(splat, (y_min, y_max), width, tile) {
+                lists[band].push(BandEntry { rank, first_tile, last_tile });
+            }
+        }
+    }
+    lists
+}
+
+/// Slack in pixels on all sides of an ellipse's exact interval: rounding in the interval, which is
+/// relative to the distances involved, must not lose a pixel that the α test would keep.
+const SLACK: f32 = 0.01;
+
+/// First and last tile of a band that the ellipse touches, by the exact interval of x in which it
+/// meets the strip between the band's first and last pixel centres.
+#[inline(always)]
+fn tiles_of(
+    splat: &ProjectedSplat,
+    (y_min, y_max): (f32, f32),
+    width: u32,
+    tile: TileSize,
+) -> Option<(u16, u16)> {
+    let (left, right) = splat.x_interval(y_min - SLACK, y_max + SLACK)?;
+    // Relative slack for splats that reach far; absolute for the rest.
+    let slack = SLACK + 1e-5 * (right - left);
+    let last_tile = (width - 1) / tile.width();
+    let inverse_width = 1.0 / tile.width() as f32;
+    // Tile t holds pixel centres from t·w + 0.5 to (t + 1)·w − 0.5.
+    let first = ((left - slack - 0.5) * inverse_width).max(0.0);
+    let last = (right + slack - 0.5) * inverse_width;
+    let touches = last >= 0.0 && first < (last_tile + 1) as f32;
+    touches.then(|| (first as u16, last.min(last_tile as f32) as u16))
 }
 
 /// Bands that hold a pixel centre inside the splat's box, one more where rounding could matter.
@@ -66,5 +126,7 @@ mod tests {
         assert_eq!(band(0), [0, 1, 2]);
         assert_eq!(band(1), [1, 2]);
         assert_eq!(band(3), [2]);
+        let tiles: Vec<_> = lists.band(0).map(|e| (e.first_tile, e.last_tile)).collect();
+        assert_eq!(tiles, [(0, 0), (0, 0), (0, 3)]);
     }
 }

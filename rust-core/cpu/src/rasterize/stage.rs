@@ -4,8 +4,8 @@ use fearless_simd::{Level, dispatch};
 use rayon::prelude::*;
 use trapeze_scene::Frame;
 
-use super::tile::{Band, TileRect, blend_tile};
-use crate::bin::{BandLists, BandTiles, TileSize, fill_tiles};
+use super::tile::{Band, StripSplat, TileRect, blend_tile};
+use crate::bin::{BandLists, BandTiles, TileSize};
 use crate::project::ProjectedSplat;
 
 /// Which images a frame holds besides colour and alpha.
@@ -36,9 +36,9 @@ pub struct Target {
 #[derive(Default)]
 struct Scratch {
     tiles: BandTiles,
-    /// The splats of the tile at hand, side by side: fetched once in a row, where the processor
+    /// The splats of the strip at hand, side by side: fetched once in a row, where the processor
     /// can have many fetches under way, they are then read block after block from the cache.
-    splats: Vec<ProjectedSplat>,
+    strip: Vec<StripSplat>,
 }
 
 /// Blends `splats` (in drawing order) into `frame`, whose buffers are reused.
@@ -47,29 +47,32 @@ pub fn rasterize(splats: &[ProjectedSplat], bands: &BandLists, target: &Target, 
     let tile_size = target.tile;
     split_bands(frame, target).into_par_iter().enumerate().for_each_init(
         Scratch::default,
-        |scratch, (index, mut band)| {
+        |Scratch { tiles, strip }, (index, mut band)| {
             let y = index as u32 * tile_size.height();
             let height = tile_size.height().min(target.height - y);
-            dispatch!(target.level, simd => {
-                fill_tiles(simd, &mut scratch.tiles, splats, &mut bands.band(index), y, (target.width, tile_size));
-            });
-            for (ranks, x) in scratch.tiles.lists().zip((0..).step_by(tile_size.width() as usize)) {
-                scratch.splats.clear();
-                scratch.splats.extend(ranks.iter().map(|&rank| splats[rank as usize]));
+            tiles.fill(bands.band(index), target.width, tile_size);
+            for (ranks, x) in tiles.lists().zip((0..).step_by(tile_size.width() as usize)) {
                 let tile = TileRect { x, y, width: tile_size.width(), height };
-                blend(&scratch.splats, tile, target, &mut band);
+                blend(splats, ranks, tile, target, strip, &mut band);
             }
         },
     );
 }
 
-fn blend(splats: &[ProjectedSplat], tile: TileRect, target: &Target, band: &mut Band<'_>) {
+fn blend(
+    splats: &[ProjectedSplat],
+    ranks: &[u32],
+    tile: TileRect,
+    target: &Target,
+    strip: &mut Vec<StripSplat>,
+    band: &mut Band<'_>,
+) {
     let Outputs { depth, top_contributor } = target.outputs;
     dispatch!(target.level, simd => match (depth, top_contributor) {
-        (false, false) => blend_tile::<_, false, false>(simd, splats, tile, band),
-        (true, false) => blend_tile::<_, true, false>(simd, splats, tile, band),
-        (false, true) => blend_tile::<_, false, true>(simd, splats, tile, band),
-        (true, true) => blend_tile::<_, true, true>(simd, splats, tile, band),
+        (false, false) => blend_tile::<_, false, false>(simd, splats, ranks, tile, strip, band),
+        (true, false) => blend_tile::<_, true, false>(simd, splats, ranks, tile, strip, band),
+        (false, true) => blend_tile::<_, false, true>(simd, splats, ranks, tile, strip, band),
+        (true, true) => blend_tile::<_, true, true>(simd, splats, ranks, tile, strip, band),
     });
 }
 
