@@ -118,11 +118,20 @@ mod tests {
     #[test]
     fn every_band_that_the_box_meets_lists_the_splat_in_drawing_order() {
         let tile = TileSize::new(16, 16).unwrap();
-        let splat =
-            |y: f32, half_height: f32| ProjectedSplat { y, half_height, ..Default::default() };
+        // Circles of a given radius: ‖U d‖ = 1 there, at the cutoff.
+        let splat = |y: f32, radius: f32| ProjectedSplat {
+            x: 8.0,
+            y,
+            u11: 1.0 / radius,
+            u22: 1.0 / radius,
+            log2_opacity: 1.0 - 255.0f32.log2(),
+            half_width: radius,
+            half_height: radius,
+            ..Default::default()
+        };
         let splats = [splat(8.0, 3.0), splat(16.0, 1.0), splat(40.0, 1e9), splat(-50.0, 10.0)];
-        let lists = bin_bands(&splats, 64, tile);
-        let band = |b| lists.band(b).collect::<Vec<_>>();
+        let lists = bin_bands(Level::new(), &splats, (64, 64), tile);
+        let band = |b| lists.band(b).map(|entry| entry.rank).collect::<Vec<_>>();
         assert_eq!(band(0), [0, 1, 2]);
         assert_eq!(band(1), [1, 2]);
         assert_eq!(band(3), [2]);

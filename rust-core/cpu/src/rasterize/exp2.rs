@@ -5,14 +5,8 @@ use fearless_simd::prelude::*;
 
 /// Coefficients of 2^(x/8) on [−8, 0], lowest first: the polynomial of degree 5 with the smallest
 /// largest relative error, 7.5·10⁻⁸ (Remez exchange).
-const COEFFICIENTS: [f32; 6] = [
-    0.9999999250635299,
-    0.08664278157415999,
-    0.0037526904570113055,
-    0.00010796820816664432,
-    2.2433134108412015e-06,
-    2.8649546407844937e-08,
-];
+const COEFFICIENTS: [f32; 6] =
+    [0.999_999_9, 0.086_642_78, 0.003_752_690_5, 0.000_107_968_21, 2.243_313_4e-6, 2.864_954_6e-8];
 
 /// 2ˣ for −8 ≤ x ≤ 0, the exponents of a visible splat (−log₂ 255 … 0), with relative error below
 /// 2·10⁻⁶: 2^(x/8), squared three times, which also multiplies its relative error by eight. Below
