@@ -58,6 +58,8 @@ struct MovingSplats {
     order: Vec<u32>,
     all_ranks: Vec<u32>,
     position_terms: PositionTerms,
+    /// Working memory: the poses of a frame, in the order of their ranks.
+    poses: Vec<SplatPose>,
 }
 
 /// The part of the input sums that depends on the position alone, by rank.
@@ -175,6 +177,7 @@ impl MovingSplats {
             all_ranks: (0..order.len() as u32).collect(),
             order,
             position_terms: PositionTerms::ComputedPerFrame,
+            poses: Vec::new(),
         };
         let bytes = moving.order.len() * moving.network.position_term_rows() * size_of::<Row>();
         if bytes <= options.position_term_budget {
@@ -232,10 +235,11 @@ impl MovingSplats {
     }
 
     /// Writes the poses of the splats at `ranks` (all of them for `None`) at `time`.
-    fn evaluate(&self, time: f32, ranks: Option<&[u32]>, deformed: &mut Deformed) {
+    fn evaluate(&mut self, time: f32, ranks: Option<&[u32]>, deformed: &mut Deformed) {
+        let mut poses = std::mem::take(&mut self.poses);
         let ranks = ranks.unwrap_or(&self.all_ranks);
+        poses.resize(ranks.len(), SplatPose::default());
         let time = self.network.time_terms(f64::from(time));
-        let mut poses = vec![SplatPose::default(); ranks.len()];
         poses.par_chunks_mut(BATCH).zip(ranks.par_chunks(BATCH)).for_each(|(poses, ranks)| {
             dispatch!(self.level, simd => self.evaluate_batch(simd, &time, ranks, poses));
         });
@@ -249,6 +253,7 @@ impl MovingSplats {
                 }
             },
         );
+        self.poses = poses;
     }
 
     #[inline(always)]
