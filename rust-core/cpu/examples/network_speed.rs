@@ -1,4 +1,4 @@
-//! Times the deformation stage on the sample scene and prints one JSON object: milliseconds per
+//! Times the deformation stage on the sample scene and prints one JSON array: milliseconds per
 //! frame of all splats, and of masked frames.
 
 #[path = "../tests/support/sample_scene.rs"]
@@ -24,11 +24,12 @@ fn time_frames(stage: &mut DeformationStage, dynamic: Option<&[u32]>) -> [f64; 3
     [times[FRAMES / 2], times[FRAMES / 10], times[FRAMES * 9 / 10]]
 }
 
-fn print(name: &str, splats: usize, [median, p10, p90]: [f64; 3]) {
-    println!(
-        "  {{\"case\": \"{name}\", \"splats\": {splats}, \"median_ms\": {median:.2}, \
-         \"p10_ms\": {p10:.2}, \"p90_ms\": {p90:.2}}},"
-    );
+fn case(name: &str, splats: usize, [median, p10, p90]: [f64; 3]) -> String {
+    format!(
+        "  {{\"case\": \"{name}\", \"threads\": {}, \"splats\": {splats}, \
+         \"median_ms\": {median:.2}, \"p10_ms\": {p10:.2}, \"p90_ms\": {p90:.2}}}",
+        rayon::current_num_threads(),
+    )
 }
 
 fn main() {
@@ -39,21 +40,17 @@ fn main() {
     let mut by_motion: Vec<u32> = (0..n as u32).collect();
     by_motion.sort_by(|&a, &b| mask[b as usize].total_cmp(&mask[a as usize]));
 
-    println!("[");
     let start = Instant::now();
     let mut stage = DeformationStage::new(&scene);
-    print("setup", n, [start.elapsed().as_secs_f64() * 1e3; 3]);
-    print("all", n, time_frames(&mut stage, None));
+    let mut cases = vec![case("setup", n, [start.elapsed().as_secs_f64() * 1e3; 3])];
+    cases.push(case("all", n, time_frames(&mut stage, None)));
     for percent in [5, 15, 50] {
         let dynamic = &by_motion[..n * percent / 100];
-        print(
-            &format!("masked {percent} %"),
-            dynamic.len(),
-            time_frames(&mut stage, Some(dynamic)),
-        );
+        let times = time_frames(&mut stage, Some(dynamic));
+        cases.push(case(&format!("masked {percent} %"), dynamic.len(), times));
     }
     let options = DeformationOptions { position_term_budget: 0, ..DeformationOptions::default() };
     let mut stage = DeformationStage::with_options(&scene, options);
-    print("all, nothing kept", n, time_frames(&mut stage, None));
-    println!("  {{\"threads\": {}}}\n]", rayon::current_num_threads());
+    cases.push(case("all, nothing kept", n, time_frames(&mut stage, None)));
+    println!("[\n{}\n]", cases.join(",\n"));
 }

@@ -2,14 +2,15 @@
 //!
 //! After a ReLU most features are zero, and for splats that are close to each other mostly the
 //! same ones: in the sample scene 23 % of the hidden features of a splat are not zero, and 32 % of
-//! those of eight neighbours taken together. Leaving the others out changes nothing (their products
-//! are exactly 0) and saves two thirds of the multiply–adds. A general matrix product cannot
-//! leave them out; that is why this is our own kernel.
+//! those of eight neighbours taken together. Leaving the others out saves two thirds of the
+//! multiply–adds and changes nothing: with finite weights their products are exactly 0. So a
+//! splat's result does not depend on the splats that it shares a group with, either. A general
+//! matrix product cannot leave them out; that is why this is our own kernel.
 
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
 
-use super::group::{Activations, BLOCK, GROUP, Group, Row, blocks};
+use super::group::{Activations, Active, BLOCK, GROUP, Group, Row, blocks};
 
 /// Outputs of a strip: one cache line of weights for each input.
 const STRIP: usize = 16;
@@ -76,7 +77,7 @@ pub(super) fn apply_layer<S: Simd>(
     output: &mut Activations,
 ) {
     if activation == Activation::Relu {
-        output.active.iter_mut().for_each(super::group::Active::clear);
+        output.active.iter_mut().for_each(Active::clear);
     }
     let lanes = S::f32s::LEN;
     let vectors = layer.outputs.next_multiple_of(STRIP) / lanes;

@@ -74,7 +74,7 @@ enum PositionTerms {
 #[derive(Debug)]
 struct Mask {
     threshold: f32,
-    dynamic_ranks: Vec<u32>,
+    dynamic_ranks: Option<Vec<u32>>,
 }
 
 /// A moment of the scene.
@@ -119,7 +119,7 @@ impl DeformationStage {
                     threshold,
                     dynamic_ranks: moving.ranks_of(&motion.dynamic_indices(threshold)),
                 });
-                Some(self.mask.insert(mask).dynamic_ranks.clone())
+                self.mask.insert(mask).dynamic_ranks.clone()
             }
             _ => None,
         };
@@ -133,7 +133,7 @@ impl DeformationStage {
     /// When an index of `dynamic` is out of range.
     pub fn evaluate(&mut self, time: f32, dynamic: Option<&[u32]>) -> &Deformed {
         let dynamic_ranks = match &self.moving {
-            Some(moving) => dynamic.map(|indices| moving.ranks_of(indices)),
+            Some(moving) => dynamic.and_then(|indices| moving.ranks_of(indices)),
             None => None,
         };
         self.show(Shown { time, dynamic_ranks })
@@ -214,14 +214,16 @@ impl MovingSplats {
         })
     }
 
-    /// Ranks of the splats at `indices`, ascending.
-    fn ranks_of(&self, indices: &[u32]) -> Vec<u32> {
+    /// Ranks of the splats at `indices`, ascending; `None` when these are all splats.
+    fn ranks_of(&self, indices: &[u32]) -> Option<Vec<u32>> {
         let mut wanted = vec![false; self.order.len()];
         for &i in indices {
             wanted[i as usize] = true;
         }
         let ranks = self.all_ranks.iter().zip(&self.order);
-        ranks.filter(|&(_, &i)| wanted[i as usize]).map(|(&rank, _)| rank).collect()
+        let ranks: Vec<u32> =
+            ranks.filter(|&(_, &i)| wanted[i as usize]).map(|(&rank, _)| rank).collect();
+        (ranks.len() < self.order.len()).then_some(ranks)
     }
 
     /// The state at t = 0.
