@@ -19,6 +19,10 @@ impl<'a> ZipMembers<'a> {
     pub(crate) fn open(bytes: &'a [u8], budget: u64) -> Result<Self, ParseError> {
         let archive = ZipArchive::new(Cursor::new(bytes))
             .map_err(|error| ParseError::value("zip archive", "a readable directory", error))?;
+        // Of two members with one name, each program may read another.
+        if archive.has_duplicate_names() {
+            return Err(ParseError::value("zip archive", "each name once", "a name twice"));
+        }
         Ok(Self { archive, budget })
     }
 
@@ -122,6 +126,17 @@ mod tests {
             let error = ZipMembers::open(&lying, 1 << 20).unwrap().read("a").unwrap_err();
             assert!(error.to_string().starts_with("zip member a: "), "{error}");
         }
+    }
+
+    #[test]
+    fn a_name_that_occurs_twice_is_refused() {
+        // The writer refuses it too, so the second member gets its name afterwards.
+        let mut bytes = archive(&[("first", b"1"), ("other", b"2")], CompressionMethod::Stored);
+        while let Some(at) = bytes.windows(5).position(|w| w == b"other") {
+            bytes[at..at + 5].copy_from_slice(b"first");
+        }
+        let error = ZipMembers::open(&bytes, 100).unwrap_err().to_string();
+        assert_eq!(error, "zip archive: expected each name once, found a name twice");
     }
 
     #[test]
