@@ -1,0 +1,198 @@
+//! `trapeze demo`: the other commands, one after the other, and a page that shows what they made.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Parser};
+use trapeze_formats::{load_scene, write_atomically};
+
+use super::Command;
+use crate::error::CliError;
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// The scene folder to show.
+    #[arg(long, default_value = "assets/sample-scene")]
+    scene: PathBuf,
+    /// Folder for everything that is made.
+    #[arg(long, default_value = "out/demo")]
+    out: PathBuf,
+    /// Frames of the turntable.
+    #[arg(long, default_value_t = 72)]
+    frames: u32,
+}
+
+/// One picture of the demo: file, caption, and the arguments that make it.
+struct Picture {
+    file: &'static str,
+    caption: &'static str,
+    arguments: &'static [&'static str],
+}
+
+const VIEW: &[&str] = &["--orbit", "35,24", "--size", "800x600", "--fov", "34", "--zoom", "1.7"];
+
+const PICTURES: [Picture; 8] = [
+    Picture { file: "color-t0.png", caption: "Colour at t = 0", arguments: &[] },
+    Picture { file: "color-t5.png", caption: "Colour at t = 0.5", arguments: &["--time", "0.5"] },
+    Picture {
+        file: "masked-t5.png",
+        caption: "The same with 45 % of the splats left out of the network",
+        arguments: &["--time", "0.5", "--static-percentile", "45"],
+    },
+    Picture {
+        file: "clusters.png",
+        caption: "Instance clusters",
+        arguments: &["--mode", "clusters", "--time", "0.5"],
+    },
+    Picture {
+        file: "depth.png",
+        caption: "Depth, near is bright",
+        arguments: &["--mode", "depth", "--time", "0.5"],
+    },
+    Picture {
+        file: "motion.png",
+        caption: "Motion: how far each splat ever moves, turns or grows",
+        arguments: &["--mode", "motion", "--time", "0.5"],
+    },
+    Picture {
+        file: "isolated.png",
+        caption: "One cluster isolated",
+        arguments: &["--isolate", "2", "--time", "0.5", "--background", "white"],
+    },
+    Picture {
+        file: "hidden.png",
+        caption: "The same cluster hidden",
+        arguments: &["--hide", "2", "--time", "0.5", "--background", "white"],
+    },
+];
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), CliError> {
+    std::fs::create_dir_all(&arguments.out).map_err(|e| CliError::file(&arguments.out, e))?;
+    let scene = arguments.scene.display().to_string();
+    let out = |file: &str| arguments.out.join(file).display().to_string();
+    let render = |file: &str, extra: &[&str]| {
+        eprintln!("rendering {file}");
+        let file = out(file);
+        let mut words = vec!["render", &scene, "--out", &file];
+        words.extend(VIEW);
+        words.extend(extra);
+        command(&words)
+    };
+    for picture in &PICTURES {
+        render(picture.file, picture.arguments)?;
+    }
+    let frames = arguments.frames.to_string();
+    let turntable = ["--path", "turntable", "--frames", &frames, "--size", "480x360"];
+    eprintln!("rendering turntable.webp");
+    let mut words = vec!["render", &scene, "--fov", "34", "--orbit", "35,24", "--zoom", "1.7"];
+    let file = out("turntable.webp");
+    words.extend(["--out", &file]);
+    words.extend(turntable);
+    command(&words)?;
+    eprintln!("comparing speed and error of every variant");
+    let folder = out("");
+    command(&[
+        "report", &scene, "--out", &folder, "--size", "640x480", "--fov", "34", "--zoom", "1.7",
+    ])?;
+    let page = page(arguments)?;
+    let path = arguments.out.join("index.html");
+    write_atomically(&path, |file| std::io::Write::write_all(file, page.as_bytes()))?;
+    eprintln!("open {}", path.display());
+    Ok(())
+}
+
+/// Runs one of the program's own commands.
+fn command(words: &[&str]) -> Result<(), CliError> {
+    #[derive(Parser)]
+    struct Line {
+        #[command(subcommand)]
+        command: Command,
+    }
+    let line = Line::try_parse_from(std::iter::once(&"trapeze").chain(words))
+        .map_err(|e| CliError::argument("demo", "a command line", e))?;
+    line.command.run()
+}
+
+fn page(arguments: &Arguments) -> Result<String, CliError> {
+    let scene = load_scene(&arguments.scene)?;
+    let table = read(&arguments.out.join("report.md"))?;
+    let mut html = String::from(HEAD);
+    // Writing to a String cannot fail.
+    let _ = writeln!(
+        html,
+        "<h1>Trapeze</h1>\n<p>{} splats, {} clusters, deformation network {}.</p>",
+        scene.len(),
+        scene.clusters.as_ref().map_or(0, |c| c.table.len()),
+        scene.deformation.as_ref().map_or("none".into(), |d| escape(&d.describe())),
+    );
+    html += "<figure><img src=\"turntable.webp\" alt=\"Turntable through time\">\
+             <figcaption>Once around, once through time</figcaption></figure>\n<div class=\"grid\">\n";
+    for picture in &PICTURES {
+        let _ = writeln!(
+            html,
+            "<figure><img src=\"{0}\" alt=\"{1}\"><figcaption>{1}</figcaption></figure>",
+            picture.file,
+            escape(picture.caption),
+        );
+    }
+    html += "</div>\n<h2>Speed against error</h2>\n";
+    html += &table_to_html(&table);
+    html += "<p><img src=\"report.svg\" alt=\"Error over time of every variant\"></p>\n</main>\n";
+    Ok(html)
+}
+
+const HEAD: &str = "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
+<meta name=\"viewport\" content=\"width=device-width\">\n<title>Trapeze demo</title>\n<style>\n\
+body { font: 16px/1.5 system-ui, sans-serif; color: #222; background: #fafafa; }\n\
+main { max-width: 1100px; margin: 2rem auto; padding: 0 1rem; }\n\
+.grid { display: grid; grid-template-columns: repeat(auto-fill, minmax(300px, 1fr)); gap: 1rem; }\n\
+figure { margin: 0; } img { max-width: 100%; background: #000; }\n\
+figcaption { color: #555; font-size: 0.9rem; }\n\
+table { border-collapse: collapse; } td, th { padding: 0.2rem 0.6rem; border-bottom: 1px solid #ddd; }\n\
+td { text-align: right; } td:first-child { text-align: left; }\n</style>\n<main>\n";
+
+/// The report's own Markdown (a line of text and one table) as HTML.
+fn table_to_html(markdown: &str) -> String {
+    let mut html = String::new();
+    let mut rows = Vec::new();
+    for line in markdown.lines() {
+        match line.strip_prefix('|').and_then(|l| l.strip_suffix('|')) {
+            Some(cells) if !cells.starts_with("---") => {
+                rows.push(cells.split('|').map(|c| escape(c.trim())).collect::<Vec<_>>());
+            }
+            None if !line.is_empty() => {
+                let _ = writeln!(html, "<p>{}</p>", escape(&line.replace('`', "")));
+            }
+            _ => {}
+        }
+    }
+    html += "<table>\n";
+    for (i, row) in rows.iter().enumerate() {
+        let tag = if i == 0 { "th" } else { "td" };
+        let cells: String = row.iter().map(|cell| format!("<{tag}>{cell}</{tag}>")).collect();
+        let _ = writeln!(html, "<tr>{cells}</tr>");
+    }
+    html + "</table>\n"
+}
+
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+fn read(path: &Path) -> Result<String, CliError> {
+    std::fs::read_to_string(path).map_err(|e| CliError::file(path, e))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_report_table_becomes_html() {
+        let html = table_to_html("`a<b`: text.\n\n| x | y |\n|---|---:|\n| 1 | 2 |\n");
+        assert!(html.contains("<p>a&lt;b: text.</p>"), "{html}");
+        assert!(html.contains("<tr><th>x</th><th>y</th></tr>"), "{html}");
+        assert!(html.contains("<tr><td>1</td><td>2</td></tr>"), "{html}");
+        assert!(!html.contains("---"));
+    }
+}

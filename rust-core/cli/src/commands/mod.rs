@@ -1,0 +1,46 @@
+//! One file per command.
+
+mod bench;
+mod convert;
+mod demo;
+mod info;
+mod motion;
+mod render;
+mod report;
+
+use clap::Subcommand;
+
+use crate::error::CliError;
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// What a scene holds: splats, bounds, clusters, deformation, memory.
+    Info(info::Arguments),
+    /// Convert between formats, and keep part of a scene.
+    Convert(convert::Arguments),
+    /// Render an image, raw values, a sequence or an animation.
+    Render(render::Arguments),
+    /// Measure how far each splat moves and recommend which can rest.
+    Motion(motion::Arguments),
+    /// Speed against error of every variant, as JSON, Markdown and SVG.
+    Report(report::Arguments),
+    /// Time one part: render, deform or load.
+    #[command(subcommand)]
+    Bench(bench::Bench),
+    /// Run the main job on a scene and write a page that shows it.
+    Demo(demo::Arguments),
+}
+
+impl Command {
+    pub(crate) fn run(&self) -> Result<(), CliError> {
+        match self {
+            Self::Info(arguments) => info::run(arguments),
+            Self::Convert(arguments) => convert::run(arguments),
+            Self::Render(arguments) => render::run(arguments),
+            Self::Motion(arguments) => motion::run(arguments),
+            Self::Report(arguments) => report::run(arguments),
+            Self::Bench(bench) => bench.run(),
+            Self::Demo(arguments) => demo::run(arguments),
+        }
+    }
+}

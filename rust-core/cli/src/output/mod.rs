@@ -1,0 +1,11 @@
+//! Images, JSON and progress.
+
+mod animation;
+mod image_file;
+mod json;
+mod progress;
+
+pub(crate) use animation::write_animation;
+pub(crate) use image_file::{Rgba8, depth_image, to_rgba8, write_png};
+pub(crate) use json::print_json;
+pub(crate) use progress::progress_bar;
