@@ -29,7 +29,7 @@ struct Picture {
     arguments: &'static [&'static str],
 }
 
-const VIEW: &[&str] = &["--orbit", "35,24", "--size", "800x600", "--fov", "34", "--zoom", "1.7"];
+const VIEW: &[&str] = &["--orbit", "35,24", "--size", "800x600", "--fov", "34", "--zoom", "1.6"];
 
 const PICTURES: [Picture; 8] = [
     Picture { file: "color-t0.png", caption: "Colour at t = 0", arguments: &[] },
@@ -84,7 +84,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), CliError> {
     let frames = arguments.frames.to_string();
     let turntable = ["--path", "turntable", "--frames", &frames, "--size", "480x360"];
     eprintln!("rendering turntable.webp");
-    let mut words = vec!["render", &scene, "--fov", "34", "--orbit", "35,24", "--zoom", "1.7"];
+    let mut words = vec!["render", &scene, "--fov", "34", "--orbit", "35,24", "--zoom", "1.6"];
     let file = out("turntable.webp");
     words.extend(["--out", &file]);
     words.extend(turntable);
@@ -92,7 +92,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), CliError> {
     eprintln!("comparing speed and error of every variant");
     let folder = out("");
     command(&[
-        "report", &scene, "--out", &folder, "--size", "640x480", "--fov", "34", "--zoom", "1.7",
+        "report", &scene, "--out", &folder, "--size", "640x480", "--fov", "34", "--zoom", "1.6",
     ])?;
     let page = page(arguments)?;
     let path = arguments.out.join("index.html");
