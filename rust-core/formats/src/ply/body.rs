@@ -8,7 +8,6 @@ use crate::ParseError;
 use crate::bytes::ByteReader;
 
 /// The bytes behind the header, read from front to back.
-#[derive(Clone, Debug)]
 pub(super) struct Body<'a> {
     reader: ByteReader<'a>,
     encoding: Encoding,

@@ -12,6 +12,9 @@ use crate::ParseError;
 /// features can make it longer.
 const MAX_HEADER_BYTES: usize = 1 << 20;
 
+/// Longest name of an element or a property: they go into messages.
+const MAX_NAME_BYTES: usize = 64;
+
 const LAST_LINE: &[u8] = b"end_header";
 
 /// The parsed header and the bytes after it.
@@ -31,7 +34,7 @@ pub(super) fn split_header(bytes: &[u8]) -> Result<(Header, &[u8]), ParseError> 
     if header.version != (Version { major: 1, minor: 0 }) {
         return Err(ParseError::value("format", "version 1.0", header.version));
     }
-    refuse_repeated_names(&text)?;
+    check_names(&text)?;
     Ok((header, body))
 }
 
@@ -56,24 +59,27 @@ fn split_text(bytes: &[u8]) -> Result<(Cow<'_, str>, &[u8]), ParseError> {
     Err(ParseError::value("header", expected, format!("none in {} bytes", searched.len())))
 }
 
-/// The header parser keeps the last of two declarations with the same name, which would shift
-/// every value behind them.
-fn refuse_repeated_names(text: &str) -> Result<(), ParseError> {
+/// Refuses names that are too long, and names that are declared twice: of those the header parser
+/// keeps one, which would shift every value behind it.
+fn check_names(text: &str) -> Result<(), ParseError> {
     let mut elements = HashSet::new();
     let mut properties = HashSet::new();
     for line in text.lines() {
         let mut words = line.split_ascii_whitespace();
-        let (what, name, is_new) = match words.next() {
-            Some("element") => {
-                properties.clear();
-                let name = words.next().unwrap_or_default();
-                ("element", name, elements.insert(name))
-            }
-            Some("property") => {
-                let name = words.last().unwrap_or_default();
-                ("property", name, properties.insert(name))
-            }
+        let (what, name) = match words.next() {
+            Some("element") => ("element", words.next().unwrap_or_default()),
+            Some("property") => ("property", words.last().unwrap_or_default()),
             _ => continue,
+        };
+        if name.len() > MAX_NAME_BYTES {
+            let expected = format!("a name of at most {MAX_NAME_BYTES} characters");
+            return Err(ParseError::value(format!("header {what}"), expected, name));
+        }
+        let is_new = if what == "element" {
+            properties.clear();
+            elements.insert(name)
+        } else {
+            properties.insert(name)
         };
         if !is_new {
             let field = format!("header {what} {name}");
@@ -131,6 +137,9 @@ mod tests {
         let huge =
             error("ply\nformat ascii 1.0\nelement vertex 18446744073709551616\nend_header\n");
         assert!(huge.starts_with("header line 3: "), "{huge}");
+        let name = "a".repeat(100_000);
+        let long = error(&format!("ply\nformat ascii 1.0\nelement {name} 1\nend_header\n"));
+        assert!(long.starts_with("header element: expected a name") && long.len() < 200, "{long}");
     }
 
     #[test]

@@ -6,7 +6,7 @@ use trapeze_scene::ShDegree;
 use crate::ParseError;
 use crate::splat_block::SplatBlock;
 
-/// What every splat file has. The first is what tells it from a file of plain points.
+/// What every splat file has. A file with none of them is one of plain points.
 const SPLAT_PROPERTIES: [&str; 11] = [
     "opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3", "f_dc_0",
     "f_dc_1", "f_dc_2",

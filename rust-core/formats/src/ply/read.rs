@@ -8,7 +8,7 @@
 //! The grammar of the header is `ply-rs-bw`'s. Its reader of the body is not used: it makes a call
 //! by property name for each number (four times slower than reading the rows in place), refuses
 //! `nan` and `inf` in text files, and counts to the end of a hostile element whose rows have no
-//! properties. The tests compare with it.
+//! properties. Its writer makes the files of the tests.
 
 use glam::DVec3;
 use ply_rs_bw::ply::{ElementDef, Header, ScalarType};

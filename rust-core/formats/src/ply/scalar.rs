@@ -26,23 +26,25 @@ pub(super) fn fits_single_precision(scalar: &ScalarType) -> bool {
 
 /// The number in `bytes`, which are [`size_of`] the type long. Every PLY number is exact in f64.
 pub(super) fn decode(scalar: &ScalarType, bytes: &[u8], order: ByteOrder) -> f64 {
-    let mut little = [0; 8];
-    let used = &mut little[..bytes.len()];
-    used.copy_from_slice(bytes);
-    if order == ByteOrder::Big {
-        used.reverse();
-    }
-    let [a, b, c, d, ..] = little;
     match scalar {
-        ScalarType::Char => f64::from(i8::from_le_bytes([a])),
-        ScalarType::UChar => f64::from(a),
-        ScalarType::Short => f64::from(i16::from_le_bytes([a, b])),
-        ScalarType::UShort => f64::from(u16::from_le_bytes([a, b])),
-        ScalarType::Int => f64::from(i32::from_le_bytes([a, b, c, d])),
-        ScalarType::UInt => f64::from(u32::from_le_bytes([a, b, c, d])),
-        ScalarType::Float => f64::from(f32::from_le_bytes([a, b, c, d])),
-        ScalarType::Double => f64::from_le_bytes(little),
+        ScalarType::Char => f64::from(i8::from_le_bytes(little_endian(bytes, order))),
+        ScalarType::UChar => f64::from(u8::from_le_bytes(little_endian(bytes, order))),
+        ScalarType::Short => f64::from(i16::from_le_bytes(little_endian(bytes, order))),
+        ScalarType::UShort => f64::from(u16::from_le_bytes(little_endian(bytes, order))),
+        ScalarType::Int => f64::from(i32::from_le_bytes(little_endian(bytes, order))),
+        ScalarType::UInt => f64::from(u32::from_le_bytes(little_endian(bytes, order))),
+        ScalarType::Float => f64::from(f32::from_le_bytes(little_endian(bytes, order))),
+        ScalarType::Double => f64::from_le_bytes(little_endian(bytes, order)),
     }
+}
+
+fn little_endian<const N: usize>(bytes: &[u8], order: ByteOrder) -> [u8; N] {
+    let mut array = [0; N];
+    array.copy_from_slice(bytes);
+    if order == ByteOrder::Big {
+        array.reverse();
+    }
+    array
 }
 
 /// Where a scalar property lies in a binary row of fixed length.
