@@ -1,0 +1,155 @@
+//! The checkpoints of one run.
+
+use std::path::{Path, PathBuf};
+
+use trapeze_formats::{ReadError, WriteError};
+
+use super::{Checkpoint, read_checkpoint, write_checkpoint};
+
+/// Checkpoints that are kept.
+const KEPT: usize = 2;
+const SUFFIX: &str = ".checkpoint";
+const PREFIX: &str = "step-";
+
+/// A folder with the newest checkpoints of one run, `step-<number>.checkpoint`.
+#[derive(Clone, Debug)]
+pub struct CheckpointFolder {
+    path: PathBuf,
+}
+
+impl CheckpointFolder {
+    /// The folder at `path`, which is made when the first checkpoint is saved.
+    #[must_use]
+    pub fn new(path: impl Into<PathBuf>) -> Self {
+        Self { path: path.into() }
+    }
+
+    /// Saves a checkpoint, then removes all but the two newest.
+    ///
+    /// # Errors
+    /// [`WriteError`] with the operating system's reason; the older checkpoints are untouched.
+    pub fn save(&self, checkpoint: &Checkpoint) -> Result<PathBuf, WriteError> {
+        std::fs::create_dir_all(&self.path)
+            .map_err(|source| WriteError::Io { path: self.path.clone(), source })?;
+        let path = self.path.join(format!("{PREFIX}{:010}{SUFFIX}", checkpoint.state.step));
+        write_checkpoint(&path, checkpoint)?;
+        for (_, old) in self.newest_first().into_iter().skip(KEPT) {
+            if let Err(error) = std::fs::remove_file(&old) {
+                tracing::warn!("{}: an old checkpoint stays: {error}", old.display());
+            }
+        }
+        Ok(path)
+    }
+
+    /// The newest checkpoint that can be read; a damaged one is reported and passed over. `None`
+    /// when there is none.
+    ///
+    /// # Errors
+    /// [`ReadError`] of the newest when there are checkpoints and none can be read.
+    pub fn load_newest(&self) -> Result<Option<Checkpoint>, ReadError> {
+        let mut first_error = None;
+        for (_, path) in self.newest_first() {
+            match read_checkpoint(&path) {
+                Ok(checkpoint) => return Ok(Some(checkpoint)),
+                Err(error) => {
+                    tracing::warn!("{error}; trying the checkpoint before it");
+                    first_error.get_or_insert(error);
+                }
+            }
+        }
+        first_error.map_or(Ok(None), Err)
+    }
+
+    /// Removes what a killed process left half-written. Only for the one process that owns the
+    /// run, before it saves.
+    pub fn remove_litter(&self) {
+        for path in files(&self.path) {
+            let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+            if name.starts_with(".trapeze-")
+                && name.ends_with(".tmp")
+                && let Err(error) = std::fs::remove_file(&path)
+            {
+                tracing::warn!("{}: cannot be removed: {error}", path.display());
+            }
+        }
+    }
+
+    /// Step and path of every checkpoint.
+    fn newest_first(&self) -> Vec<(u32, PathBuf)> {
+        let mut found: Vec<(u32, PathBuf)> = files(&self.path)
+            .filter_map(|path| {
+                let name = path.file_name()?.to_str()?;
+                let step = name.strip_prefix(PREFIX)?.strip_suffix(SUFFIX)?.parse().ok()?;
+                Some((step, path))
+            })
+            .collect();
+        found.sort_unstable_by(|a, b| b.cmp(a));
+        found
+    }
+}
+
+/// What is in a folder; nothing when it does not exist.
+fn files(folder: &Path) -> impl Iterator<Item = PathBuf> {
+    std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Progress;
+    use super::*;
+    use crate::TrainingState;
+    use crate::config::TrainingConfig;
+    use crate::parameters::tests::random_splats;
+
+    fn checkpoint(step: u32) -> Checkpoint {
+        let splats = random_splats(step.into(), 9, trapeze_scene::ShDegree::Zero);
+        Checkpoint {
+            config: TrainingConfig::default(),
+            progress: Progress::default(),
+            state: TrainingState { step, ..TrainingState::new(splats) },
+        }
+    }
+
+    #[test]
+    fn the_two_newest_are_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let checkpoints = CheckpointFolder::new(folder.path().join("new"));
+        assert!(checkpoints.load_newest().unwrap().is_none());
+        for step in [500, 1000, 10_000, 100_000] {
+            checkpoints.save(&checkpoint(step)).unwrap();
+        }
+        let steps: Vec<u32> =
+            checkpoints.newest_first().into_iter().map(|(step, _)| step).collect();
+        assert_eq!(steps, [100_000, 10_000]);
+        assert_eq!(checkpoints.load_newest().unwrap().unwrap(), checkpoint(100_000));
+    }
+
+    #[test]
+    fn a_damaged_newest_gives_way_to_the_one_before() {
+        let folder = tempfile::tempdir().unwrap();
+        let checkpoints = CheckpointFolder::new(folder.path());
+        checkpoints.save(&checkpoint(1)).unwrap();
+        let newest = checkpoints.save(&checkpoint(2)).unwrap();
+        let bytes = std::fs::read(&newest).unwrap();
+        std::fs::write(&newest, &bytes[..bytes.len() / 2]).unwrap();
+        assert_eq!(checkpoints.load_newest().unwrap().unwrap().state.step, 1);
+        std::fs::write(folder.path().join("step-0000000001.checkpoint"), b"").unwrap();
+        let error = checkpoints.load_newest().unwrap_err().to_string();
+        assert!(error.contains("step-0000000002.checkpoint"), "{error}");
+    }
+
+    #[test]
+    fn half_written_files_are_removed_and_foreign_ones_are_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let checkpoints = CheckpointFolder::new(folder.path());
+        for name in [".trapeze-abc.tmp", "notes.txt", "step-x.checkpoint"] {
+            std::fs::write(folder.path().join(name), b"x").unwrap();
+        }
+        checkpoints.remove_litter();
+        checkpoints.save(&checkpoint(3)).unwrap();
+        let mut names: Vec<_> =
+            files(folder.path()).map(|path| path.file_name().unwrap().to_owned()).collect();
+        names.sort();
+        assert_eq!(names, ["notes.txt", "step-0000000003.checkpoint", "step-x.checkpoint"]);
+    }
+}

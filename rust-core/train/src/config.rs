@@ -1,0 +1,300 @@
+//! Everything that decides how a run goes, as one serialisable value.
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+use trapeze_scene::ShDegree;
+
+use crate::densify::PositionNoise;
+use crate::optimizer::{AdamConstants, RateSchedule, Regularisers};
+
+/// What is behind the splats while training.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Background {
+    /// One colour.
+    Fixed([f32; 3]),
+    /// Another uniform colour at every step, so that no splat can stand in for the background.
+    Random,
+}
+
+/// How the first splats look.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct InitialSplats {
+    /// Opacity of every splat.
+    pub opacity: f64,
+    /// Standard deviation, as a multiple of the mean distance to the nearest neighbours.
+    pub scale: f64,
+    /// Number of random splats for datasets without points.
+    pub random_count: u32,
+}
+
+impl Default for InitialSplats {
+    /// Kerbl et al. 2023.
+    fn default() -> Self {
+        Self { opacity: 0.1, scale: 1.0, random_count: 10_000 }
+    }
+}
+
+/// When and how the set of splats changes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Densification {
+    /// Hard cap on the number of splats. More initial splats than this stay.
+    pub max_splats: u32,
+    /// Steps between two changes.
+    pub interval: u32,
+    /// The first step that may change the set.
+    pub start: u32,
+    /// From this step on the set stays as it is.
+    pub stop: u32,
+    /// Growth at each change, as a share of the splats.
+    pub growth: f64,
+    /// At most this opacity is dead.
+    pub dead_opacity: f64,
+    /// Exploration.
+    pub noise: PositionNoise,
+}
+
+impl Default for Densification {
+    /// Kheradmand et al. 2024, for a run of 30 000 steps.
+    fn default() -> Self {
+        Self {
+            max_splats: 1_000_000,
+            interval: 100,
+            start: 500,
+            stop: 25_000,
+            growth: 0.05,
+            dead_opacity: 0.005,
+            noise: PositionNoise::default(),
+        }
+    }
+}
+
+/// The settings of a run. The defaults train a static scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct TrainingConfig {
+    /// Optimisation steps, one view each.
+    pub steps: u32,
+    /// Seed of every random choice.
+    pub seed: u64,
+    /// Every how many-th view is held out for evaluation, the first included; `None` trains on all.
+    pub holdout: Option<u32>,
+    /// What is behind the splats while training.
+    pub background: Background,
+    /// λ of (1 − λ)·L1 + λ·(1 − SSIM).
+    pub ssim_weight: f64,
+    /// Highest SH degree, 0 to 3.
+    pub sh_degree: u32,
+    /// Steps between two SH degrees; 0 starts with the highest.
+    pub sh_interval: u32,
+    /// Learning rates.
+    pub rates: RateSchedule,
+    /// Adam's constants.
+    pub adam: AdamConstants,
+    /// Pressure on opacities and scales.
+    pub regularisers: Regularisers,
+    /// How the set of splats changes; `None` keeps the initial set.
+    pub densification: Option<Densification>,
+    /// How the first splats look.
+    pub initial: InitialSplats,
+}
+
+impl Default for TrainingConfig {
+    fn default() -> Self {
+        Self::growing(7_000, 100_000)
+    }
+}
+
+impl TrainingConfig {
+    /// The initial splats and no others: the settings of Kerbl et al. 2023 without densification.
+    #[must_use]
+    pub fn fixed(steps: u32) -> Self {
+        Self {
+            steps,
+            seed: 0,
+            holdout: None,
+            background: Background::Fixed([0.0; 3]),
+            ssim_weight: 0.2,
+            sh_degree: 3,
+            sh_interval: 1_000,
+            rates: RateSchedule::default(),
+            adam: AdamConstants::default(),
+            regularisers: Regularisers::default(),
+            densification: None,
+            initial: InitialSplats::default(),
+        }
+    }
+
+    /// Growth to at most `max_splats` by Kheradmand et al. 2024, over the first five sixths of the
+    /// run, as their 25 000 of 30 000 steps: they start from small, half-opaque splats and press on
+    /// opacities and scales.
+    #[must_use]
+    pub fn growing(steps: u32, max_splats: u32) -> Self {
+        Self {
+            regularisers: Regularisers { opacity: 0.01, scale: 0.01 },
+            densification: Some(Densification {
+                max_splats,
+                stop: steps - steps / 6,
+                ..Densification::default()
+            }),
+            initial: InitialSplats { opacity: 0.5, scale: 0.1, ..InitialSplats::default() },
+            ..Self::fixed(steps)
+        }
+    }
+
+    /// The highest SH degree.
+    ///
+    /// # Errors
+    /// [`ConfigError`] when it is above 3.
+    pub fn max_sh_degree(&self) -> Result<ShDegree, ConfigError> {
+        ShDegree::try_from(self.sh_degree)
+            .map_err(|_| ConfigError::new("sh_degree", "0 to 3", self.sh_degree))
+    }
+
+    /// Checks every number against the range in which a run makes sense.
+    ///
+    /// # Errors
+    /// [`ConfigError`] names the first field that is outside.
+    pub fn validate(&self) -> Result<(), ConfigError> {
+        self.max_sh_degree()?;
+        if self.steps == 0 {
+            return Err(ConfigError::new("steps", "at least 1", self.steps));
+        }
+        if self.holdout.is_some_and(|k| k < 2) {
+            return Err(ConfigError::new("holdout", "at least 2, or none", 0));
+        }
+        if let Background::Fixed(color) = self.background {
+            for c in color {
+                in_range("background", f64::from(c), 0.0, 1.0)?;
+            }
+        }
+        in_range("ssim_weight", self.ssim_weight, 0.0, 1.0)?;
+        let rates = &self.rates;
+        for (field, rate) in [
+            ("rates.positions_start", rates.positions_start),
+            ("rates.positions_end", rates.positions_end),
+            ("rates.log_scales", rates.log_scales),
+            ("rates.rotations", rates.rotations),
+            ("rates.opacity_logits", rates.opacity_logits),
+            ("rates.sh_dc", rates.sh_dc),
+            ("rates.sh_rest", rates.sh_rest),
+            ("regularisers.opacity", self.regularisers.opacity),
+            ("regularisers.scale", self.regularisers.scale),
+        ] {
+            in_range(field, rate, 0.0, 1e6)?;
+        }
+        if rates.positions_start > 0.0 && rates.positions_end == 0.0 {
+            return Err(ConfigError::new("rates.positions_end", "a number above 0", 0));
+        }
+        let below_one = 1.0 - f64::EPSILON;
+        in_range("adam.beta1", self.adam.beta1, 0.0, below_one)?;
+        in_range("adam.beta2", self.adam.beta2, 0.0, below_one)?;
+        in_range("adam.epsilon", self.adam.epsilon, f64::from(f32::MIN_POSITIVE), 1.0)?;
+        in_range("initial.opacity", self.initial.opacity, 1e-6, below_one)?;
+        in_range("initial.scale", self.initial.scale, 1e-6, 1e6)?;
+        self.densification.as_ref().map_or(Ok(()), Densification::validate)
+    }
+}
+
+impl Densification {
+    fn validate(&self) -> Result<(), ConfigError> {
+        if self.interval == 0 {
+            return Err(ConfigError::new("densification.interval", "at least 1", 0));
+        }
+        if self.max_splats == 0 {
+            return Err(ConfigError::new("densification.max_splats", "at least 1", 0));
+        }
+        in_range("densification.growth", self.growth, 0.0, 10.0)?;
+        in_range("densification.dead_opacity", self.dead_opacity, 0.0, 0.5)?;
+        in_range("densification.noise.scale", self.noise.scale, 0.0, 1e12)?;
+        in_range("densification.noise.gate_steepness", self.noise.gate_steepness, 0.0, 1e6)?;
+        in_range("densification.noise.gate_opacity", self.noise.gate_opacity, 0.0, 1.0)
+    }
+}
+
+/// A setting outside its range.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{field}: expected {expected}, found {found}")]
+pub struct ConfigError {
+    /// Path of the setting.
+    pub field: &'static str,
+    /// What would have been accepted.
+    pub expected: String,
+    /// The value.
+    pub found: f64,
+}
+
+impl ConfigError {
+    fn new(field: &'static str, expected: impl Into<String>, found: impl Into<f64>) -> Self {
+        Self { field, expected: expected.into(), found: found.into() }
+    }
+}
+
+fn in_range(field: &'static str, value: f64, low: f64, high: f64) -> Result<(), ConfigError> {
+    if (low..=high).contains(&value) {
+        return Ok(());
+    }
+    Err(ConfigError::new(field, format!("{low} to {high}"), value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn presets_are_valid_and_survive_json() {
+        for config in
+            [TrainingConfig::default(), TrainingConfig::fixed(1), TrainingConfig::growing(7, 1)]
+        {
+            config.validate().unwrap();
+            let json = serde_json::to_string(&config).unwrap();
+            assert_eq!(serde_json::from_str::<TrainingConfig>(&json).unwrap(), config);
+        }
+    }
+
+    #[test]
+    fn missing_settings_take_their_defaults_and_unknown_ones_are_refused() {
+        let config: TrainingConfig = serde_json::from_str(r#"{"steps": 12}"#).unwrap();
+        assert_eq!(config, TrainingConfig { steps: 12, ..TrainingConfig::default() });
+        let error = serde_json::from_str::<TrainingConfig>(r#"{"stepz": 12}"#).unwrap_err();
+        assert!(error.to_string().contains("stepz"), "{error}");
+    }
+
+    #[test]
+    fn settings_out_of_range_are_refused_by_name() {
+        let default = TrainingConfig::default;
+        let densification = Densification { interval: 0, ..Densification::default() };
+        for (field, config) in [
+            ("steps", TrainingConfig { steps: 0, ..default() }),
+            ("sh_degree", TrainingConfig { sh_degree: 4, ..default() }),
+            ("holdout", TrainingConfig { holdout: Some(1), ..default() }),
+            ("ssim_weight", TrainingConfig { ssim_weight: f64::NAN, ..default() }),
+            (
+                "background",
+                TrainingConfig { background: Background::Fixed([0.0, -1.0, 0.0]), ..default() },
+            ),
+            (
+                "rates.positions_end",
+                TrainingConfig {
+                    rates: RateSchedule { positions_end: 0.0, ..RateSchedule::default() },
+                    ..default()
+                },
+            ),
+            (
+                "adam.beta2",
+                TrainingConfig {
+                    adam: AdamConstants { beta2: 1.0, ..AdamConstants::default() },
+                    ..default()
+                },
+            ),
+            (
+                "densification.interval",
+                TrainingConfig { densification: Some(densification), ..default() },
+            ),
+        ] {
+            assert_eq!(config.validate().unwrap_err().field, field);
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! How the set of splats changes: Kheradmand et al. 2024, "3D Gaussian Splatting as Markov Chain
+//! Monte Carlo" (arXiv 2404.09591).
+//!
+//! Splats that have become invisible move to where they are needed, the set grows by a fixed share
+//! up to a hard cap, and nearly transparent splats explore. Nothing here depends on the image, and
+//! every choice is a function of (parameters, seed, step), so that the CPU and the GPU make the same.
+
+mod correction;
+mod noise;
+mod relocation;
+mod sampling;
+
+pub use correction::{MAX_COPIES, logit, relocation_correction};
+pub use noise::PositionNoise;
+pub use relocation::{grow, grown_count, relocate_dead};

@@ -1,0 +1,34 @@
+//! Training: from photographs with known cameras to splats.
+//!
+//! # The model
+//!
+//! A step renders one view, compares it with its photograph ([`loss`]), carries the gradient back
+//! to the parameters (the backend), and updates them ([`optimizer`]). Every hundred steps the set
+//! of splats changes ([`densify`]). What happens at which step is a [`schedule`] made from a
+//! [`config`]; a run can be stopped and resumed at any step ([`checkpoint`]).
+//!
+//! # Why it is arranged like this
+//!
+//! The same trainer drives the CPU and the GPU through one trait, [`backend::TrainingBackend`],
+//! whose documentation gives the reasons for its cut. Two properties run through the whole crate:
+//!
+//! * **A run is a function of (dataset, configuration).** Random numbers are addressed, not
+//!   consumed ([`random`]); sums are made in a fixed order, whatever the number of threads; no
+//!   decision reads a clock. So a run that is killed and resumed ends with the same bits.
+//! * **Nothing that is not finite enters the state.** A poisoned gradient or an exploding rate is
+//!   stopped at the single parameter that it reaches, and counted.
+
+pub mod backend;
+pub mod checkpoint;
+pub mod config;
+pub mod densify;
+mod exponential;
+pub mod loss;
+pub mod optimizer;
+mod parameters;
+pub mod random;
+pub mod schedule;
+mod state;
+
+pub use parameters::{ParameterGroup, zeros_like};
+pub use state::TrainingState;

@@ -1,0 +1,11 @@
+//! What happens to the parameters once their gradients are known.
+
+mod adam;
+mod rates;
+mod regularisers;
+mod update;
+
+pub use adam::{AdamConstants, AdamStep, adam_step};
+pub use rates::{RateSchedule, Rates};
+pub use regularisers::Regularisers;
+pub use update::apply_update;
