@@ -9,6 +9,7 @@ use crate::ParseError;
 /// A zip archive in memory. All members together may decode to no more than the budget, so that
 /// neither a member that inflates without end nor many members that share one compressed stream
 /// can fill the memory.
+#[derive(Debug)]
 pub(crate) struct ZipMembers<'a> {
     archive: ZipArchive<Cursor<&'a [u8]>>,
     budget: u64,

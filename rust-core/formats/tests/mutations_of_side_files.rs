@@ -73,7 +73,7 @@ fn masks() {
     let per_cluster = checkpoint::floats(&[0.0, 1.0]);
     let parse = |bytes: &[u8]| parse_mask_bin(bytes, 6, Some(&clusters));
     // Cut at 8 bytes, the values of the splats are those of two clusters.
-    check("mask.bin", &[per_cluster.clone()], parse);
+    check("mask.bin", std::slice::from_ref(&per_cluster), parse);
     mutate_and_parse("mask.bin per splat", &[per_splat, per_cluster], RUNS, parse);
 
     let ours = br#"{"recommended_percentile": 45.0, "measure": "position"}"#;
@@ -101,7 +101,9 @@ fn pickles() {
     let ids: Vec<u8> = [3_i64, 8, 3, 3].iter().flat_map(|id| id.to_le_bytes()).collect();
     let colors = checkpoint::floats(&[0.5; 12]);
     let pack = |bytes: &[u8]| checkpoint::checkpoint(bytes, &[("0", &ids), ("1", &colors)]);
-    check("clusters pickle", &[clusters.clone()], |bytes| parse_clusters_pt(&pack(bytes)));
+    check("clusters pickle", std::slice::from_ref(&clusters), |bytes| {
+        parse_clusters_pt(&pack(bytes))
+    });
     // Both kinds in one corpus, so that pieces of one end up in the other.
     mutate_and_parse("pickle", &[clusters, network], 2 * RUNS, |bytes| {
         match parse_clusters_pt(&pack(bytes)) {

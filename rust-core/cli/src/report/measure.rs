@@ -73,10 +73,10 @@ fn measure_variant(
     }
     let error = ImageError::between(&pixels, &truth);
     let mut durations = Vec::new();
-    for round in 0..min_frames.div_ceil(moments.len()) {
+    for _ in 0..min_frames.div_ceil(moments.len()) {
         for moment in moments {
-            // A little later each round: the same moment again would leave out the network.
-            let time = moment.time + round as f32 * 1e-4;
+            // A little later each frame: the same time again would leave out the network.
+            let time = moment.time + durations.len() as f32 * 1e-4;
             let start = Instant::now();
             renderer.render_into(&moment.camera, &settings(time), &mut frame)?;
             durations.push(start.elapsed());
