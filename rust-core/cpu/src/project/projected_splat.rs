@@ -29,6 +29,9 @@ pub struct ProjectedSplat {
     pub color: [f32; 3],
     /// View z, world units.
     pub depth: f32,
+    /// What `depth` lost to rounding: depth + depth_low is z to 48 bits. Near-ties are ordered by
+    /// it as the reference orders them.
+    pub depth_low: f32,
     /// Half the width of the box around α = 1/255, pixels.
     pub half_width: f32,
     /// Half the height of that box, pixels.

@@ -226,6 +226,9 @@ fn blend<S: Simd, const DEPTH: bool, const TOP: bool>(
     }
 }
 
+/// Largest alpha of a pixel: 1 − 10⁻⁴, rounded down.
+const MAX_IMAGE_ALPHA: f32 = 0.999_9;
+
 /// Writes row `r` of a block to the pixels `range` of a band.
 #[inline(always)]
 fn store<S: Simd, const DEPTH: bool, const TOP: bool>(
@@ -236,8 +239,8 @@ fn store<S: Simd, const DEPTH: bool, const TOP: bool>(
     band: &mut Band<'_>,
 ) {
     let count = range.len();
-    // Rounding in the sum of weights must not pass 1.
-    let alpha = block.weight[r].min(f32x16::splat(simd, 1.0));
+    // T stays above its minimum by rule; rounding in the sum of weights must not say otherwise.
+    let alpha = block.weight[r].min(f32x16::splat(simd, MAX_IMAGE_ALPHA));
     // Two rounds of interleaving turn four planes into pixels.
     let [red, green, blue] = [block.color[0][r], block.color[1][r], block.color[2][r]];
     let (red_blue, green_alpha) = (red.interleave(blue), green.interleave(alpha));

@@ -24,6 +24,7 @@ impl SortStage {
             input.iter().enumerate().map(|(i, s)| u64::from(s.depth.to_bits()) << 32 | i as u64),
         );
         self.keys.radix_sort_unstable();
+        self.order_near_ties(input);
         // Later stages walk the splats in drawing order; moving them now turns those walks into
         // sequential reads.
         self.keys
@@ -31,6 +32,17 @@ impl SortStage {
             .with_min_len(4096)
             .map(|&key| input[key as u32 as usize])
             .collect_into_vec(sorted);
+    }
+
+    /// Orders runs of equal f32 depths by what rounding took from them, then by splat index.
+    fn order_near_ties(&mut self, input: &[ProjectedSplat]) {
+        let same_depth = |a: &u64, b: &u64| a >> 32 == b >> 32;
+        for run in self.keys.chunk_by_mut(same_depth).filter(|run| run.len() > 1) {
+            run.sort_unstable_by(|&a, &b| {
+                let low = |key: u64| input[key as u32 as usize].depth_low;
+                low(a).total_cmp(&low(b)).then(a.cmp(&b))
+            });
+        }
     }
 }
 
@@ -47,12 +59,20 @@ mod tests {
             let quantised = |d: f32| if step > 0.0 { (d / step).ceil() * step + 0.01 } else { d };
             let input: Vec<_> = (0u32..)
                 .zip(&depths)
-                .map(|(index, &d)| ProjectedSplat { depth: quantised(d), index, ..Default::default() })
+                .map(|(index, &d)| ProjectedSplat {
+                    depth: quantised(d),
+                    depth_low: (index % 3) as f32 * 1e-9 - 1e-9,
+                    index,
+                    ..Default::default()
+                })
                 .collect();
             let mut sorted = Vec::new();
             SortStage::default().sort(&input, &mut sorted);
             let mut expected = input.clone();
-            expected.sort_by(|a, b| a.depth.total_cmp(&b.depth).then(a.index.cmp(&b.index)));
+            expected.sort_by(|a, b| {
+                let low = a.depth_low.total_cmp(&b.depth_low);
+                a.depth.total_cmp(&b.depth).then(low).then(a.index.cmp(&b.index))
+            });
             prop_assert_eq!(sorted, expected);
         }
     }
