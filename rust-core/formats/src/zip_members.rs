@@ -136,7 +136,7 @@ mod tests {
         while let Some(at) = bytes.windows(5).position(|w| w == b"other") {
             bytes[at..at + 5].copy_from_slice(b"first");
         }
-        let error = ZipMembers::open(&bytes, 100).unwrap_err().to_string();
+        let error = ZipMembers::open(&bytes, 100).err().unwrap().to_string();
         assert_eq!(error, "zip archive: expected each name once, found a name twice");
     }
 

@@ -102,15 +102,7 @@ fn sh_rest(
     if coefficients == 0 {
         return Ok((Vec::new(), degree));
     }
-    // Entries lie one after the other, row by row, so the image is the palette in order.
-    let entries = centroids.rgba.len() / coefficients;
-    if let Some(stated) = palette.entries
-        && stated > entries as u64
-    {
-        let expected = format!("at most the {entries} of {}", centroids.name);
-        return Err(ParseError::value("shN.count", expected, stated));
-    }
-    let entries = palette.entries.unwrap_or(entries as u64);
+    let entries = palette_entries(palette, centroids, coefficients)?;
     let values: Vec<f32> = centroids
         .rgba
         .par_iter()
@@ -120,7 +112,7 @@ fn sh_rest(
     let mut rest = vec![0.0; n * stride];
     let copy = |(i, (target, pixel)): (usize, (&mut [f32], &[u8; 4]))| {
         let label = usize::from(u16::from_le_bytes([pixel[0], pixel[1]]));
-        if label as u64 >= entries {
+        if label >= entries {
             let field = format!("{}: label of splat {i}", labels.name);
             return Err(ParseError::value(field, format!("below {entries}"), label));
         }
@@ -129,6 +121,24 @@ fn sh_rest(
     };
     rest.par_chunks_exact_mut(stride).zip(labels.first(n)).enumerate().try_for_each(copy)?;
     Ok((rest, degree))
+}
+
+/// Number of entries. They lie one after the other, row by row, so the image is the palette in
+/// order, and what version 2 states is at most what the image holds.
+fn palette_entries(
+    palette: &Palette,
+    centroids: &Pixels,
+    coefficients: usize,
+) -> Result<usize, ParseError> {
+    let held = centroids.rgba.len() / coefficients;
+    match palette.entries {
+        Some(stated) if stated > held as u64 => {
+            let expected = format!("at most the {held} of {}", centroids.name);
+            Err(ParseError::value("shN.count", expected, stated))
+        }
+        Some(stated) => Ok(stated as usize),
+        None => Ok(held),
+    }
 }
 
 /// The degree whose coefficients fill the width of the palette's image.

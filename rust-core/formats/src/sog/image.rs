@@ -2,7 +2,7 @@
 
 use std::io::Cursor;
 
-use image_webp::WebPDecoder;
+use image_webp::{DecodingError, WebPDecoder};
 use rayon::prelude::*;
 use trapeze_scene::ShDegree;
 
@@ -101,12 +101,15 @@ impl<'a> Header<'a> {
 
     fn decode(mut self) -> Result<Pixels, ParseError> {
         let pixels = self.pixels() as usize;
-        let mut bytes = vec![0; pixels * if self.decoder.has_alpha() { 4 } else { 3 }];
-        self.decoder.read_image(&mut bytes).map_err(|e| damaged("WebP", self.name, e))?;
+        let refused = |e: DecodingError| damaged("WebP", self.name, e);
         let rgba = if self.decoder.has_alpha() {
-            bytes.as_chunks::<4>().0.to_vec()
+            let mut rgba = vec![[0; 4]; pixels];
+            self.decoder.read_image(rgba.as_flattened_mut()).map_err(refused)?;
+            rgba
         } else {
-            bytes.as_chunks::<3>().0.iter().map(|&[r, g, b]| [r, g, b, 255]).collect()
+            let mut rgb = vec![[0; 3]; pixels];
+            self.decoder.read_image(rgb.as_flattened_mut()).map_err(refused)?;
+            rgb.into_iter().map(|[r, g, b]| [r, g, b, 255]).collect()
         };
         let width = self.decoder.dimensions().0 as usize;
         Ok(Pixels { name: self.name.into(), width, rgba })

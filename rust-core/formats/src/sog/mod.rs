@@ -27,11 +27,11 @@ use std::path::Path;
 
 use trapeze_scene::Scene;
 
+use crate::decompression::unpacked_limit;
 use crate::error::InFile;
+use crate::zip_members::ZipMembers;
 use crate::{ParseError, ReadError, open};
 
-use crate::decompression::unpacked_limit;
-use crate::zip_members::ZipMembers;
 use source::{Folder, Source};
 
 /// Name of the description in a folder or an archive.

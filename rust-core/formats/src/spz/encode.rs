@@ -33,10 +33,10 @@ pub enum SpzVersion {
 pub struct SpzOptions {
     /// The version of the format.
     pub version: SpzVersion,
-    /// Bits kept of each SH coefficient, 1 to 8: of band 1, and of bands 2 and 3. A coefficient
-    /// has eight bits in every file; those dropped compress away. The reference writer keeps 5 and
-    /// 4, which costs up to 1/16 of a display unit per coefficient of the higher bands; the default
-    /// keeps all.
+    /// Bits kept of each SH coefficient, limited to 1–8: of band 1, and of bands 2 and 3. A
+    /// coefficient has eight bits in every file; those dropped compress away. The reference writer
+    /// keeps 5 and 4, which costs up to 1/16 per coefficient of the higher bands; the default keeps
+    /// all.
     pub sh_bits: [u8; 2],
 }
 
@@ -132,8 +132,7 @@ fn pack_positions(scene: &Scene, fractional_bits: u8, signs: &AxisSigns) -> Vec<
     })
 }
 
-/// Opacities; 0 for a splat that is not drawn because a value is not finite and that the
-/// quantised values would make visible.
+/// Opacities; 0 for a splat that no renderer draws and that its quantised values would show.
 fn pack_alphas(splats: &Splats) -> Vec<u8> {
     (0..splats.len())
         .into_par_iter()
@@ -141,8 +140,9 @@ fn pack_alphas(splats: &Splats) -> Vec<u8> {
         .collect()
 }
 
+/// Whether the centre and the scales of a splat are numbers.
 fn is_drawn(splats: &Splats, i: usize) -> bool {
-    splats.positions[i].iter().chain(&splats.rotations[i]).all(|x| x.is_finite())
+    splats.positions[i].iter().all(|x| x.is_finite())
         && splats.log_scales[i].iter().all(|s| !s.is_nan() && *s < f32::INFINITY)
 }
 
@@ -155,7 +155,7 @@ fn log_scale_byte(log_scale: f32) -> u8 {
     ((log_scale - LOG_SCALE_OFFSET) * LOG_SCALE_STEPS).round() as u8
 }
 
-/// A quaternion without a direction is written as no rotation.
+/// A quaternion without a direction (zero, not finite) is written as it is drawn: no rotation.
 fn pack_rotation([w, x, y, z]: [f32; 4], signs: &AxisSigns) -> [u8; 4] {
     let [sx, sy, sz] = signs.rotation.map(f64::from);
     let [w, x, y, z] = [w, x, y, z].map(f64::from);
@@ -200,8 +200,8 @@ fn warn_about_clamping(splats: &Splats) {
     if log_scales + colors + sh + invisible > 0 {
         tracing::warn!(
             "SPZ: clamped {log_scales} log-scales to [-10, 5.94], {colors} colours to [-3.33, \
-             3.33] and {sh} SH coefficients to [-1, 1]; wrote {invisible} splats with values that \
-             are not finite as invisible"
+             3.33] and {sh} SH coefficients to [-1, 1]; wrote {invisible} splats whose position or \
+             scale is not finite as invisible"
         );
     }
 }

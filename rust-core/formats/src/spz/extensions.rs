@@ -34,8 +34,8 @@ pub(super) fn parse(bytes: &[u8]) -> Result<AxisSigns, ParseError> {
     Ok(signs)
 }
 
-/// Systems 1 to 8 count left/right, down/up and back/front in binary; 9 to 16 exchange y and z,
-/// which no scene that was trained here needs. 0 is unspecified and means the default.
+/// Systems 1 to 8 count left/right, down/up and back/front in binary; 9 to 16 exchange y and z
+/// and are not supported. 0 is unspecified and means the default.
 fn axes(system: u32) -> Result<AxisSigns, ParseError> {
     let sign = |reversed: bool| if reversed { -1.0 } else { 1.0 };
     match system {
