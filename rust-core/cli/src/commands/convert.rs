@@ -5,16 +5,17 @@ use std::path::PathBuf;
 use clap::Args;
 use glam::DVec3;
 use trapeze_cpu::deform::DeformationStage;
-use trapeze_formats::save_scene;
+use trapeze_formats::{load_scene, save_scene};
 use trapeze_scene::edit::{
-    FloaterRule, bake, crop_box, drop_clusters, keep_clusters, min_opacity, without_floaters,
+    FloaterRule, Placement, bake, crop_box, drop_clusters, keep_clusters, merge, min_opacity,
+    without_floaters,
 };
 use trapeze_scene::{Bounds, Scene, ShDegree};
 
 use crate::error::CliError;
 use crate::scene_input::SceneArguments;
 
-/// Filters apply in the order in which they are listed here; weights, clusters and motion values
+/// A merge comes first. Filters apply in the order in which they are listed here; weights, clusters and motion values
 /// follow the splats that are left.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -23,6 +24,13 @@ pub(crate) struct Arguments {
     /// Where to write: .ply, .compressed.ply, .splat or .spz for the splats alone, anything else
     /// for a scene folder.
     output: PathBuf,
+    /// Add the splats of another scene, which has no deformation network of its own.
+    #[arg(long, value_name = "SCENE")]
+    merge: Option<PathBuf>,
+    /// Where the added scene goes: it is enlarged by SCALE, then moved by X, Y, Z.
+    #[arg(long, value_name = "X,Y,Z,SCALE", requires = "merge", allow_hyphen_values = true,
+          value_parser = parse_placement)]
+    place: Option<Placement>,
     /// Keep only these clusters.
     #[arg(long, value_name = "IDS", value_delimiter = ',', conflicts_with = "drop_clusters")]
     keep_clusters: Vec<u32>,
@@ -47,7 +55,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), CliError> {
-    let scene = arguments.scene.load()?;
+    let scene = with_merged(arguments.scene.load()?, arguments)?;
     let before = scene.len();
     let scene = frozen(filtered(scene, arguments)?, arguments.time)?;
     if scene.is_empty() && before > 0 {
@@ -56,6 +64,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), CliError> {
     save_scene(&arguments.output, &scene)?;
     eprintln!("{}: {} of {before} splats", arguments.output.display(), scene.len());
     Ok(())
+}
+
+fn with_merged(scene: Scene, arguments: &Arguments) -> Result<Scene, CliError> {
+    let Some(path) = &arguments.merge else { return Ok(scene) };
+    let added = load_scene(path)?;
+    if added.deformation.is_some() {
+        return Err(CliError::argument(
+            "--merge",
+            "a scene without a deformation network",
+            format!("one in {}", path.display()),
+        ));
+    }
+    Ok(merge(&scene, &added, &arguments.place.unwrap_or_default())?)
 }
 
 fn filtered(mut scene: Scene, arguments: &Arguments) -> Result<Scene, CliError> {
@@ -107,9 +128,32 @@ fn parse_box(text: &str) -> Result<Bounds, String> {
     Ok(Bounds { min: a.min(b), max: a.max(b) })
 }
 
+fn parse_placement(text: &str) -> Result<Placement, String> {
+    let numbers: Option<Vec<f64>> = text
+        .split(',')
+        .map(|part| part.trim().parse().ok().filter(|n: &f64| n.is_finite()))
+        .collect();
+    match numbers.as_deref() {
+        Some(&[x, y, z, scale]) if scale > 0.0 => {
+            Ok(Placement { translation: DVec3::new(x, y, z), scale })
+        }
+        _ => Err("expected three numbers and a scale above 0, as in 0,0,-1,0.5".into()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_placement_is_three_numbers_and_a_positive_scale() {
+        let placement = parse_placement("-1, 2,0.5,0.25").unwrap();
+        assert_eq!(placement.translation, DVec3::new(-1.0, 2.0, 0.5));
+        assert_eq!(placement.scale, 0.25);
+        for bad in ["1,2,3", "1,2,3,0", "1,2,3,-1", "1,2,nan,1", "1,a,2,3,4"] {
+            assert!(parse_placement(bad).unwrap_err().contains("0,0,-1,0.5"), "{bad}");
+        }
+    }
 
     #[test]
     fn the_corners_of_a_box_may_come_in_any_order() {

@@ -63,8 +63,8 @@ struct Share {
 }
 
 /// Shares that are compared, percent.
-const SHARES: [f32; 15] =
-    [5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 60.0, 70.0, 80.0, 90.0, 95.0];
+const SHARES: [f32; 16] =
+    [5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 60.0, 70.0, 80.0, 85.0, 90.0, 95.0];
 /// Views and times on which the worst error is taken; the product is what a share must survive.
 const AZIMUTHS: u32 = 8;
 const TIMES: [f32; 8] = [0.06, 0.19, 0.31, 0.44, 0.56, 0.69, 0.81, 0.94];
