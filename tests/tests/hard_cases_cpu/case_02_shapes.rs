@@ -6,7 +6,7 @@ use trapeze_tests::{
 };
 
 /// A needle 10 units long and 10⁻⁵ thick: 1 : 10⁶.
-const NEEDLE: [f32; 3] = [2.302_585_1, -11.512_925, -11.512_925];
+const NEEDLE: [f32; 3] = [std::f32::consts::LN_10, -11.512_925, -11.512_925];
 
 /// Quaternion of a turn by `angle` about a unit axis.
 fn turn([x, y, z]: [f32; 3], angle: f32) -> [f32; 4] {

@@ -88,7 +88,7 @@ pub(crate) fn raw(scene: &Path, options: &[&str]) -> (Vec<usize>, Vec<f64>) {
     arguments.extend(options.iter().map(Into::into));
     succeed(&arguments);
     let array = read_npy(&out).unwrap();
-    (array.shape.clone(), array.to_f64())
+    (array.shape.clone(), array.values.to_f64())
 }
 
 /// Share of the values that differ by more than `tolerance`; NaN agrees with NaN alone.
