@@ -212,7 +212,7 @@ fn output_that_cannot_be_written_is_named() {
         let message = fixture.render(&["--out", out.to_str().unwrap()]);
         expect(&message, &out, &["Not a directory"]);
     }
-    for name in ["out.ply", "out.spz", "out"] {
+    for name in ["out.ply", "out.splat", "out"] {
         let out = file.join(name);
         let message = refusal(&arguments!["convert", &fixture.scene, &out]);
         expect(&message, &out, &["Not a directory"]);

@@ -115,11 +115,13 @@ fn splats_survive_every_format_that_is_written() {
         let found = result.bounds().unwrap();
         assert!((found.min - bounds.min).abs().max_element() <= step, "{name}");
         assert!((found.max - bounds.max).abs().max_element() <= step, "{name}");
-        // Eight bits of colour and opacity on each of several splats per pixel, and log-scales in
-        // steps of 1/16 (3 % of a splat's width) in SPZ: a few hundredths at the edges of splats.
+        // Eight bits of colour and opacity on each of several splats per pixel, log-scales in steps
+        // of 1/16 (3 % of a splat's width) in SPZ, quaternions in steps of 1/128 (half a degree, 1 %
+        // of the length at the ends of a needle) in .splat: a few hundredths at the edges of splats,
+        // and the edges are a few percent of this small image.
         let (_, image) = raw(&again, &["--sh-degree", "0"]);
         let share = differing(&image, &exact, |_| 0.03);
-        assert!(share < 0.01, "{name}: {share} of the values differ");
+        assert!(share < 0.02, "{name}: {share} of the values differ");
     }
     let size = std::fs::metadata(folder.path().join("a.splat")).unwrap().len();
     assert_eq!(size, 32 * scene.len() as u64);
@@ -135,11 +137,21 @@ fn a_baked_moment_looks_like_the_moment_and_moves_no_more() {
     for part in ["weights.bin", "mask.bin", "mask.json"] {
         assert!(!out.join(part).exists(), "{part}");
     }
-    let (_, moment) = raw(&path, &["--time", "0.5"]);
-    let (_, still) = raw(&out, &[]);
+    // One camera for both: an orbit frames the canonical positions of the one and the moved ones
+    // of the other.
+    let camera = folder.path().join("camera.json");
+    std::fs::write(
+        &camera,
+        r#"{"width":64,"height":48,"fx":90,"fy":90,"cx":32,"cy":24,"world_to_camera":
+            [[0,1,0,0],[0.247404,0,-0.968912,0.436],[-0.968912,0,-0.247404,4.311],[0,0,0,1]]}"#,
+    )
+    .unwrap();
+    let camera = camera.to_str().unwrap();
+    let (_, moment) = raw(&path, &["--camera", camera, "--time", "0.5"]);
+    let (_, still) = raw(&out, &["--camera", camera]);
     // The scales went through a logarithm and back: a few units in the last place, which only
     // shows where an α is at the 1/255 that decides whether a splat is blended.
     let share = differing(&still, &moment, |_| 1e-4);
     assert!(share < 0.01, "{share} of the values differ");
-    assert_eq!(still, raw(&out, &["--time", "0.9"]).1);
+    assert_eq!(still, raw(&out, &["--camera", camera, "--time", "0.9"]).1);
 }
