@@ -19,7 +19,7 @@ const HEADER_BYTES: u64 = 12;
 const BYTES_PER_SPLAT: u64 = 16;
 
 /// Parses `clusters.bin`. A cluster takes the colour of its first splat; see
-/// [`clusters_with_valid_colors`] for colours that are none.
+/// `clusters_with_valid_colors` for colours that are none.
 ///
 /// # Errors
 /// [`ParseError`] for another magic or version, or a length that the count does not give.

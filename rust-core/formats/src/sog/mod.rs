@@ -12,7 +12,7 @@
 //!
 //! Version 1 gives each table by its first and last value and stores the opacity's logit, version 2
 //! gives 256 values and stores the opacity itself. Both become tables of 256 values here
-//! ([`meta::Meta`]), and one decoder reads either. Axes are those of a PLY file.
+//! (`meta::Meta`), and one decoder reads either. Axes are those of a PLY file.
 //!
 //! Source: the format's specification,
 //! <https://developer.playcanvas.com/user-manual/gaussian-splatting/formats/sog/>, and for version 1

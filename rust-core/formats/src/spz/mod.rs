@@ -13,7 +13,7 @@
 //! | sh | 0, 9, 24, 45 or 72 | coefficient × 128 + 128, coefficient-major, r g b innermost |
 //!
 //! The axes are right, up, back; ours, as in a PLY file, are right, down, front. Positions,
-//! quaternions and the odd SH terms change sign on the way in and out ([`AxisSigns`]).
+//! quaternions and the odd SH terms change sign on the way in and out (`AxisSigns`).
 //!
 //! [`write_spz`] writes version 3 unless asked for 4: every SPZ reader opens it, while version 4
 //! (2026) is read by few programs and gains nothing here but a parallel decode.
