@@ -14,6 +14,7 @@ mod bytes;
 mod camera_json;
 mod cluster_names;
 mod clusters_bin;
+pub mod dataset;
 mod decompression;
 mod error;
 mod json;

@@ -45,12 +45,12 @@ impl Camera {
         }
         for (field, focal) in [("fx", self.fx), ("fy", self.fy)] {
             if !(focal.is_finite() && focal > 0.0) {
-                return refuse(field, "a positive focal length in pixels", focal.to_string());
+                return refuse(field, "a positive focal length in pixels", format!("{focal:?}"));
             }
         }
         for (field, centre) in [("cx", self.cx), ("cy", self.cy)] {
             if !centre.is_finite() {
-                return refuse(field, "a finite principal point in pixels", centre.to_string());
+                return refuse(field, "a finite principal point in pixels", format!("{centre:?}"));
             }
         }
         if !self.world_to_camera.is_finite() {
@@ -58,11 +58,15 @@ impl Camera {
         }
         let last = self.world_to_camera.row(3);
         if last != DVec4::W {
-            return refuse("world_to_camera", "last row 0 0 0 1", format!("{last}"));
+            return refuse("world_to_camera", "last row 0 0 0 1", format!("{:?}", last.to_array()));
         }
         let determinant = self.rotation().determinant();
         if determinant.abs() < 1e-12 {
-            return refuse("world_to_camera", "an invertible matrix", format!("det {determinant}"));
+            return refuse(
+                "world_to_camera",
+                "an invertible matrix",
+                format!("det {determinant:?}"),
+            );
         }
         Ok(())
     }
@@ -177,5 +181,8 @@ mod tests {
             assert!(message.contains(field), "{message}");
         }
         assert!(camera().validate().is_ok());
+        // Not with 300 digits.
+        let message = Camera { fx: -1e300, ..camera() }.validate().unwrap_err().to_string();
+        assert!(message.ends_with("found -1e300"), "{message}");
     }
 }

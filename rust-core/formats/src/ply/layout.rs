@@ -98,7 +98,8 @@ fn refuse_plain_points(vertex: &ElementDef) -> Result<(), ParseError> {
     ))
 }
 
-fn scalar_index(vertex: &ElementDef, name: &str) -> Result<usize, ParseError> {
+/// Where the property of that name is, if it is a number.
+pub(super) fn scalar_index(vertex: &ElementDef, name: &str) -> Result<usize, ParseError> {
     let field = || format!("vertex property {name}");
     match vertex.properties.get_full(name) {
         Some((index, _, property)) => match property.data_type {

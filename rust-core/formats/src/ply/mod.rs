@@ -7,6 +7,7 @@ mod body;
 mod compressed;
 mod header;
 mod layout;
+mod points;
 mod read;
 mod scalar;
 mod write;
@@ -18,6 +19,7 @@ use trapeze_scene::Scene;
 use crate::error::InFile;
 use crate::{ParseError, ReadError, open};
 pub use compressed::{encode_compressed_ply, write_compressed_ply};
+pub(crate) use points::parse_points;
 pub use write::{encode_ply, write_ply};
 
 /// Reads a PLY file of splats, plain or compressed.
