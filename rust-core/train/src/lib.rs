@@ -2,7 +2,7 @@
 //!
 //! # The model
 //!
-//! A step renders one view, compares it with its photograph ([`loss`]), carries the gradient back
+//! Splats start in the places of points or at random ([`initialise`]). A step renders one view, compares it with its photograph ([`loss`]), carries the gradient back
 //! to the parameters (the backend), and updates them ([`optimizer`]). Every hundred steps the set
 //! of splats changes ([`densify`]). What happens at which step is a [`schedule`] made from a
 //! [`config`]; a run can be stopped and resumed at any step ([`checkpoint`]).
@@ -23,6 +23,7 @@ pub mod checkpoint;
 pub mod config;
 pub mod densify;
 mod exponential;
+pub mod initialise;
 pub mod loss;
 pub mod optimizer;
 mod parameters;
