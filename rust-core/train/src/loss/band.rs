@@ -11,10 +11,11 @@ use fearless_simd::Simd;
 
 use super::composite::{TargetRow, composite_row, join_row, mask_row, target_row};
 use super::kernels::{
-    COLUMN_BLOCK, GradientScale, PAD, ROWS, RowRing, SimilarityRow, TILE, TILE_ROW, TileRows,
-    WINDOW_ROWS, derivatives_down, gradient_across, push_row, similarity_across, statistics_down,
-    sum, sum_of_differences,
+    COLUMN_BLOCK, GradientScale, PAD, ROWS, SimilarityRow, TILE, TILE_ROW, TileRows, WINDOW_ROWS,
+    Window, derivatives_down, gradient_across, similarity_across, statistics_down, sum,
+    sum_of_differences,
 };
+use super::plane::Plane;
 use super::target::TargetImage;
 use super::window::{RADIUS, TAPS};
 
@@ -43,23 +44,24 @@ pub(super) struct BandSums {
 /// Working memory of one band, reused from step to step.
 #[derive(Default)]
 pub(super) struct BandBuffers {
+    /// Width of the image that the planes are laid out, and their padding is zero, for.
+    width: usize,
     /// Floats of a plane row.
     stride: usize,
     /// The render by channel, then its gradient: `BAND_ROWS` + 20 rows, and what the last block
     /// of a vertical pass reads beyond them.
-    render: [Vec<f32>; 3],
+    render: [Plane; 3],
     /// The target, likewise.
-    target: [Vec<f32>; 3],
+    target: [Plane; 3],
     /// Derivatives of SSIM of one channel: `BAND_ROWS` + 10 rows, likewise.
-    derivatives: [Vec<f32>; 3],
+    derivatives: [Plane; 3],
     tile: Box<TileBuffers>,
 }
 
-/// What a tile needs between the planes.
+/// What a tile needs between the planes, on cache lines as they are.
+#[repr(align(64))]
 struct TileBuffers {
-    /// The rows that a vertical pass reads, of up to three planes.
-    rings: [RowRing; 3],
-    /// What it writes, of up to four planes.
+    /// What a vertical pass writes, of up to four planes.
     rows: [TileRows; 4],
     /// 1 − SSIM of one row.
     dissimilarity: [f32; TILE],
@@ -67,11 +69,7 @@ struct TileBuffers {
 
 impl Default for TileBuffers {
     fn default() -> Self {
-        Self {
-            rings: [[[0.0; TILE_ROW]; _]; 3],
-            rows: [[[0.0; TILE_ROW]; _]; 4],
-            dissimilarity: [0.0; TILE],
-        }
+        Self { rows: [[[0.0; TILE_ROW]; _]; 4], dissimilarity: [0.0; TILE] }
     }
 }
 
@@ -88,14 +86,20 @@ struct Tile {
 
 impl BandBuffers {
     fn prepare(&mut self, width: usize) {
-        let stride = width.next_multiple_of(COLUMN_BLOCK) + 2 * PAD;
-        if stride == self.stride {
+        if width == self.width {
             return;
         }
-        let plane = |rows: usize| vec![0.0; rows * stride];
+        let mut stride = width.next_multiple_of(COLUMN_BLOCK) + 2 * PAD;
+        if stride.is_multiple_of(2 * COLUMN_BLOCK) {
+            // Rows an even number of cache lines apart crowd into a part of the cache's sets.
+            stride += COLUMN_BLOCK;
+        }
+        // The last tile of the last row is read to its full width.
+        let plane = |rows: usize| Plane::zeros(rows * stride + TILE_ROW);
         let rows_read = |rows: usize| rows.next_multiple_of(ROWS) - ROWS + WINDOW_ROWS;
         let derivative_rows = rows_read(BAND_ROWS).next_multiple_of(ROWS);
         *self = Self {
+            width,
             stride,
             render: std::array::from_fn(|_| plane(rows_read(derivative_rows))),
             target: std::array::from_fn(|_| plane(rows_read(derivative_rows))),
@@ -178,16 +182,11 @@ impl BandBuffers {
         tile: Tile,
     ) -> f64 {
         let mut total = 0.0;
-        let mut read = 0;
         for block in (0..band.len() + 2 * RADIUS).step_by(ROWS) {
-            for j in read..block + WINDOW_ROWS {
-                let row = j * self.stride + tile.start..(j + 1) * self.stride;
-                push_row(&mut self.tile.rings[0], j, &self.render[channel][row.clone()]);
-                push_row(&mut self.tile.rings[1], j, &self.target[channel][row]);
-            }
-            read = block + WINDOW_ROWS;
-            let TileBuffers { rings: [x, y, _], rows, .. } = &mut *self.tile;
-            statistics_down(simd, input.weights, [x, y], block, &mut rows.each_mut());
+            let x = window(&self.render[channel], self.stride, block, tile);
+            let y = window(&self.target[channel], self.stride, block, tile);
+            let out = &mut self.tile.rows.each_mut();
+            statistics_down(simd, input.weights, [x, y], out);
             for r in 0..ROWS {
                 let j = block + r;
                 let image = (band.start + j).checked_sub(RADIUS);
@@ -241,18 +240,11 @@ impl BandBuffers {
         channel: usize,
         tile: Tile,
     ) {
-        let mut read = 0;
         for block in (0..rows).step_by(ROWS) {
-            for j in read..block + WINDOW_ROWS {
-                let row = j * self.stride + tile.start..(j + 1) * self.stride;
-                for (ring, plane) in self.tile.rings.iter_mut().zip(&self.derivatives) {
-                    push_row(ring, j, &plane[row.clone()]);
-                }
-            }
-            read = block + WINDOW_ROWS;
-            let TileBuffers { rings, rows: [a, b, c, _], .. } = &mut *self.tile;
-            let mut out = [a, b, c];
-            derivatives_down(simd, input.weights, rings.each_ref(), block, &mut out);
+            let planes = self.derivatives.each_ref();
+            let windows = planes.map(|plane| window(plane, self.stride, block, tile));
+            let [a, b, c, _] = &mut self.tile.rows;
+            derivatives_down(simd, input.weights, windows, &mut [a, b, c]);
             for r in 0..ROWS {
                 let start = (block + r + 2 * RADIUS) * self.stride + PAD + tile.start;
                 let own = start..start + tile.columns;
@@ -299,5 +291,13 @@ fn tiles(width: usize) -> impl Iterator<Item = Tile> {
         start,
         columns: TILE.min(padded - start),
         inside: TILE.min(width - start),
+    })
+}
+
+/// The rows of a plane from `first` on, in the columns of a tile and around it.
+fn window(plane: &[f32], stride: usize, first: usize, tile: Tile) -> Window<'_> {
+    std::array::from_fn(|i| {
+        let start = (first + i) * stride + tile.start;
+        plane[start..].first_chunk().expect("planes end with a spare tile row")
     })
 }

@@ -2,10 +2,10 @@
 //!
 //! A *plane* row holds [`PAD`] zeros, the image row, zeros up to a multiple of [`COLUMN_BLOCK`], and
 //! [`PAD`] zeros again, so that windows read past the ends without a branch. The passes work on a
-//! *tile* of columns at a time, going down: rows of the tile and [`PAD`] columns on both sides are
-//! copied into a [`RowRing`], a vertical pass turns the ring into *tile rows*, and a horizontal pass
-//! reads those. Their sizes are constants, so nothing is checked in the inner loops, and at 128
-//! columns they stay in a first-level cache of 32 KiB.
+//! *tile* of columns at a time, going down: a vertical pass reads a [`Window`] of rows, the tile and
+//! [`PAD`] columns on both sides, and writes [`TileRows`], which a horizontal pass reads. Their
+//! sizes are constants, so nothing is checked in the inner loops, and at 128 columns they stay in a
+//! first-level cache of 32 KiB.
 //!
 //! Inside these kernels there are no closures and no iterator adaptors around vector operations:
 //! what the compiler does not inline loses the instruction set, and then every operation is a call.
@@ -31,24 +31,14 @@ pub(super) const PAD: usize = 16;
 pub(super) const TILE: usize = 128;
 /// Floats of a tile row.
 pub(super) const TILE_ROW: usize = TILE + 2 * PAD;
-/// Rows that a ring holds: a power of two, at least [`WINDOW_ROWS`].
-const RING_ROWS: usize = 16;
 
-/// The last rows of one plane in one tile.
-pub(super) type RowRing = [[f32; TILE_ROW]; RING_ROWS];
-/// What a vertical pass writes for one plane.
-pub(super) type TileRows = [[f32; TILE_ROW]; ROWS];
-
-/// Copies row `j` of a plane, from the tile's left padding on, into its place. What the plane does
-/// not have right of the last tile is zero.
-pub(super) fn push_row(ring: &mut RowRing, j: usize, row: &[f32]) {
-    let place = &mut ring[j % RING_ROWS];
-    let columns = row.len().min(TILE_ROW);
-    place[..columns].copy_from_slice(&row[..columns]);
-    place[columns..].fill(0.0);
-}
 /// Multiple of every vector width, and the lanes of a row sum.
 pub(super) const COLUMN_BLOCK: usize = 16;
+
+/// The rows of one plane that a vertical pass reads.
+pub(super) type Window<'a> = [&'a [f32; TILE_ROW]; WINDOW_ROWS];
+/// What a vertical pass writes for one plane.
+pub(super) type TileRows = [[f32; TILE_ROW]; ROWS];
 
 /// Runs a block for each row of a vertical pass: apart for the first rows, which are not in all
 /// windows yet, for those that are in all, and for the last. With fixed trip counts the compiler
@@ -61,22 +51,21 @@ macro_rules! for_each_window_row {
     };
 }
 
-/// Vertical windows of x, y, x² + y² and xy for [`ROWS`] rows, from the [`WINDOW_ROWS`] rows that
-/// begin with row `first` of the rings. Only the sum of the squares enters SSIM.
+/// Vertical windows of x, y, x² + y² and xy for [`ROWS`] rows. Only the sum of the squares enters
+/// SSIM.
 #[simd]
 pub(super) fn statistics_down<S: Simd>(
     simd: S,
     weights: &[f32; TAPS],
-    [x, y]: [&RowRing; 2],
-    first: usize,
+    [x, y]: [Window<'_>; 2],
     out: &mut [&mut TileRows; 4],
 ) {
     let weights = splat_all(simd, weights);
     for column in (0..TILE_ROW).step_by(S::f32s::LEN) {
         let mut sums = [[S::f32s::splat(simd, 0.0); 4]; ROWS];
         for_each_window_row!(i => {
-            let x = load(simd, &x[(first + i) % RING_ROWS], column);
-            let y = load(simd, &y[(first + i) % RING_ROWS], column);
+            let x = load(simd, x[i], column);
+            let y = load(simd, y[i], column);
             add_row(&mut sums, [x, y, x * x + y * y, x * y], &weights, i);
         });
         store_rows(&sums, column, out);
@@ -88,17 +77,16 @@ pub(super) fn statistics_down<S: Simd>(
 pub(super) fn derivatives_down<S: Simd>(
     simd: S,
     weights: &[f32; TAPS],
-    [a, b, c]: [&RowRing; 3],
-    first: usize,
+    [a, b, c]: [Window<'_>; 3],
     out: &mut [&mut TileRows; 3],
 ) {
     let weights = splat_all(simd, weights);
     for column in (0..TILE_ROW).step_by(S::f32s::LEN) {
         let mut sums = [[S::f32s::splat(simd, 0.0); 3]; ROWS];
         for_each_window_row!(i => {
-            let a = load(simd, &a[(first + i) % RING_ROWS], column);
-            let b = load(simd, &b[(first + i) % RING_ROWS], column);
-            let c = load(simd, &c[(first + i) % RING_ROWS], column);
+            let a = load(simd, a[i], column);
+            let b = load(simd, b[i], column);
+            let c = load(simd, c[i], column);
             add_row(&mut sums, [a, b, c], &weights, i);
         });
         store_rows(&sums, column, out);

@@ -3,9 +3,10 @@
 //! Both are also given after rounding to 8 bits, which is what a saved image holds. The figure of a
 //! set of views is the mean of the views' figures, not the figure of the pooled error.
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::reference::{compared_planes, ssim_with_gradient};
+use super::reference::{compared_planes, similarity};
 use super::target::{TargetError, TargetImage, expect_length};
 
 /// How close a render is to a photograph.
@@ -23,7 +24,8 @@ pub struct ViewMetrics {
 
 impl ViewMetrics {
     /// Metrics of `render` (premultiplied r g b, alpha) against `target`, both over `background`.
-    /// Masked pixels count by their weight; without any weight the metrics are NaN.
+    /// Masked pixels count by their weight; without any weight, or with a pixel that is not a number,
+    /// the metrics are NaN.
     ///
     /// # Errors
     /// [`TargetError::Length`] when the render has another number of pixels.
@@ -66,22 +68,24 @@ fn compare(
     render: &[[f64; 4]],
     target: &TargetImage,
     background: [f64; 3],
-    store: impl Fn(f64) -> f64,
+    store: fn(f64) -> f64,
 ) -> (f64, f64) {
     let weights: Vec<f64> = (0..target.len()).map(|i| target.over(i, background).1).collect();
     let total = 3.0 * weights.iter().sum::<f64>();
-    let (mut squares, mut similarity) = (0.0, 0.0);
-    for channel in 0..3 {
-        let (x, y) = compared_planes(render, target, background, channel);
-        let [x, y] =
-            [x, y].map(|plane| plane.into_iter().map(|c| store(c.clamp(0.0, 1.0))).collect());
-        let (x, y): (Vec<f64>, Vec<f64>) = (x, y);
-        let (ssim, _) = ssim_with_gradient(&x, &y, target.width(), target.height());
-        for (i, weight) in weights.iter().enumerate() {
-            squares += weight * (x[i] - y[i]).powi(2);
-            similarity += weight * ssim[i];
-        }
-    }
+    let sums: Vec<(f64, f64)> = (0..3)
+        .into_par_iter()
+        .map(|channel| {
+            let (mut x, mut y) = compared_planes(render, target, background, channel);
+            for color in x.iter_mut().chain(&mut y) {
+                *color = store(color.clamp(0.0, 1.0));
+            }
+            let ssim = similarity(&x, &y, target.width(), target.height()).value;
+            let squares = (0..x.len()).map(|i| weights[i] * (x[i] - y[i]).powi(2)).sum::<f64>();
+            (squares, (0..x.len()).map(|i| weights[i] * ssim[i]).sum())
+        })
+        .collect();
+    let squares: f64 = sums.iter().map(|(squares, _)| squares).sum();
+    let similarity: f64 = sums.iter().map(|(_, similarity)| similarity).sum();
     (-10.0 * (squares / total).log10(), similarity / total)
 }
 

@@ -10,6 +10,7 @@ mod composite;
 mod image_loss;
 mod kernels;
 pub mod metrics;
+mod plane;
 pub mod reference;
 mod target;
 #[cfg(test)]

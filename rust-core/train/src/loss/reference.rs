@@ -42,11 +42,11 @@ pub fn reference_loss(
         ReferenceLoss { l1: 0.0, ssim: 0.0, total: 0.0, gradient: vec![[0.0; 4]; render.len()] };
     for channel in 0..3 {
         let (x, y) = compared_planes(render, target, background, channel);
-        let (ssim, ssim_gradient) = ssim_with_gradient(&x, &y, width, height);
-        for (i, g_ssim) in ssim_gradient.into_iter().enumerate() {
+        let ssim = similarity(&x, &y, width, height);
+        for (i, g_ssim) in ssim.gradient(&x, &y, width, height).into_iter().enumerate() {
             let difference = x[i] - y[i];
             loss.l1 += difference.abs() / values;
-            loss.ssim += ssim[i] / values;
+            loss.ssim += ssim.value[i] / values;
             // The subgradient of |0| is 0.
             let sign = if difference == 0.0 { 0.0 } else { difference.signum() };
             let (_, weight) = target.over(i, background);
@@ -78,27 +78,27 @@ pub(super) fn compared_planes(
         .unzip()
 }
 
-/// SSIM of every pixel, and ∂ΣSSIM/∂x of every pixel.
+/// SSIM of every pixel, and its derivatives by the windowed means of x, x² and xy.
+pub(super) struct Similarity {
+    pub(super) value: Vec<f64>,
+    derivatives: [Vec<f64>; 3],
+}
+
+/// SSIM of two planes.
 ///
 /// Wang et al. 2004: S = N₁N₂ / (D₁D₂) with N₁ = 2μₓμᵧ + C₁, N₂ = 2σₓᵧ + C₂, D₁ = μₓ² + μᵧ² + C₁,
-/// D₂ = σₓ² + σᵧ² + C₂ and windowed means. As a function of the windowed means of x, x² and xy its
-/// derivatives are A, B and C below, and the chain rule through the symmetric window W gives
-/// ∂ΣS/∂x = W·A + 2x·W·B + y·W·C.
-pub(super) fn ssim_with_gradient(
-    x: &[f64],
-    y: &[f64],
-    width: usize,
-    height: usize,
-) -> (Vec<f64>, Vec<f64>) {
-    let mean_of = |f: &dyn Fn(f64, f64) -> f64| -> Vec<f64> {
+/// D₂ = σₓ² + σᵧ² + C₂ and windowed means.
+pub(super) fn similarity(x: &[f64], y: &[f64], width: usize, height: usize) -> Similarity {
+    let mean_of = |f: fn(f64, f64) -> f64| -> Vec<f64> {
         let plane: Vec<f64> = x.iter().zip(y).map(|(&x, &y)| f(x, y)).collect();
         blur(&plane, width, height)
     };
-    let (mean_x, mean_y) = (mean_of(&|x, _| x), mean_of(&|_, y| y));
-    let (mean_xx, mean_yy) = (mean_of(&|x, _| x * x), mean_of(&|_, y| y * y));
-    let mean_xy = mean_of(&|x, y| x * y);
-    let mut similarity = vec![0.0; x.len()];
-    let (mut a, mut b, mut c) = (vec![0.0; x.len()], vec![0.0; x.len()], vec![0.0; x.len()]);
+    let (mean_x, mean_y) = (mean_of(|x, _| x), mean_of(|_, y| y));
+    let (mean_xx, mean_yy) = (mean_of(|x, _| x * x), mean_of(|_, y| y * y));
+    let mean_xy = mean_of(|x, y| x * y);
+    let zeros = || vec![0.0; x.len()];
+    let mut result = Similarity { value: zeros(), derivatives: [zeros(), zeros(), zeros()] };
+    let [by_mean, by_square, by_product] = &mut result.derivatives;
     for i in 0..x.len() {
         let (mx, my) = (mean_x[i], mean_y[i]);
         let n1 = 2.0 * mx * my + C1;
@@ -106,12 +106,19 @@ pub(super) fn ssim_with_gradient(
         let d1 = mx * mx + my * my + C1;
         let d2 = mean_xx[i] - mx * mx + mean_yy[i] - my * my + C2;
         let s = n1 * n2 / (d1 * d2);
-        similarity[i] = s;
-        a[i] = 2.0 * my * (n2 - n1) / (d1 * d2) - 2.0 * mx * s * (1.0 / d1 - 1.0 / d2);
-        b[i] = -s / d2;
-        c[i] = 2.0 * n1 / (d1 * d2);
+        result.value[i] = s;
+        by_mean[i] = 2.0 * my * (n2 - n1) / (d1 * d2) - 2.0 * mx * s * (1.0 / d1 - 1.0 / d2);
+        by_square[i] = -s / d2;
+        by_product[i] = 2.0 * n1 / (d1 * d2);
     }
-    let [a, b, c] = [a, b, c].map(|plane| blur(&plane, width, height));
-    let gradient = (0..x.len()).map(|i| a[i] + 2.0 * x[i] * b[i] + y[i] * c[i]).collect();
-    (similarity, gradient)
+    result
+}
+
+impl Similarity {
+    /// ∂ΣS/∂x of every pixel. With A, B and C the derivatives by the windowed means of x, x² and
+    /// xy, the chain rule through the symmetric window W gives W·A + 2x·W·B + y·W·C.
+    fn gradient(&self, x: &[f64], y: &[f64], width: usize, height: usize) -> Vec<f64> {
+        let [a, b, c] = self.derivatives.each_ref().map(|plane| blur(plane, width, height));
+        (0..x.len()).map(|i| a[i] + 2.0 * x[i] * b[i] + y[i] * c[i]).collect()
+    }
 }

@@ -226,7 +226,7 @@ fn the_loss_is_bit_identical_for_any_number_of_threads() {
 #[test]
 fn one_evaluator_serves_views_of_different_sizes() {
     let loss = ImageLoss::default();
-    for size in [(90, 70), (5, 5), (90, 70), (200, 30)] {
+    for size in [(96, 70), (90, 70), (5, 5), (112, 70), (96, 70), (200, 30)] {
         let case = Case::random(9, size, Channels::Rgb, false);
         let mut gradient = vec![[0.0; 4]; case.render.len()];
         let value = loss

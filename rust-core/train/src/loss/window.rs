@@ -21,28 +21,31 @@ pub(super) fn weights() -> [f64; TAPS] {
 /// plane counts as zero. The operator is symmetric, so it is its own transpose: the gradient of
 /// anything that depends on a blurred plane is the blurred gradient.
 pub(super) fn blur(plane: &[f64], width: usize, height: usize) -> Vec<f64> {
-    let weights = weights();
-    let sum = |at: usize, end: usize, value: &dyn Fn(usize) -> f64| -> f64 {
-        (0..TAPS)
-            .filter_map(|tap| {
-                let i = (at + tap).checked_sub(RADIUS).filter(|&i| i < end)?;
-                Some(weights[tap] * value(i))
-            })
-            .sum()
-    };
     let mut down = vec![0.0; plane.len()];
-    for (y, row) in down.chunks_exact_mut(width).enumerate() {
-        for (x, out) in row.iter_mut().enumerate() {
-            *out = sum(y, height, &|i| plane[i * width + x]);
+    for (y, out) in down.chunks_exact_mut(width).enumerate() {
+        for (tap, weight) in weights().into_iter().enumerate() {
+            if let Some(row) = (y + tap).checked_sub(RADIUS).filter(|&row| row < height) {
+                add_scaled(out, &plane[row * width..(row + 1) * width], weight);
+            }
         }
     }
     let mut both = vec![0.0; plane.len()];
     for (out, row) in both.chunks_exact_mut(width).zip(down.chunks_exact(width)) {
-        for (x, out) in out.iter_mut().enumerate() {
-            *out = sum(x, width, &|i| row[i]);
+        for (tap, weight) in weights().into_iter().enumerate() {
+            // Output column x takes row[x + tap − RADIUS].
+            let (left, right) = (RADIUS.saturating_sub(tap), tap.saturating_sub(RADIUS));
+            if left < width && right < width {
+                add_scaled(&mut out[left..width - right], &row[right..width - left], weight);
+            }
         }
     }
     both
+}
+
+fn add_scaled(out: &mut [f64], values: &[f64], weight: f64) {
+    for (out, value) in out.iter_mut().zip(values) {
+        *out += weight * value;
+    }
 }
 
 #[cfg(test)]
@@ -51,7 +54,12 @@ mod tests {
 
     #[test]
     fn the_two_passes_equal_the_two_dimensional_window() {
-        let (width, height) = (13, 7);
+        for (width, height) in [(13, 7), (1, 1), (3, 20), (20, 2)] {
+            check(width, height);
+        }
+    }
+
+    fn check(width: usize, height: usize) {
         let plane: Vec<f64> = (0..width * height).map(|i| ((i * 37) % 101) as f64).collect();
         let (found, w) = (blur(&plane, width, height), weights());
         for y in 0..height {
