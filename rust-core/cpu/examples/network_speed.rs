@@ -33,12 +33,11 @@ fn case(name: &str, splats: usize, [median, p10, p90]: [f64; 3]) -> String {
 }
 
 fn main() {
-    let Some(folder) = sample_scene::folder() else { return };
-    let scene = sample_scene::load(&folder);
+    let scene = sample_scene::load();
     let n = scene.len();
-    let mask = sample_scene::f32s(&std::fs::read(folder.join("mask.bin")).unwrap());
-    let mut by_motion: Vec<u32> = (0..n as u32).collect();
-    by_motion.sort_by(|&a, &b| mask[b as usize].total_cmp(&mask[a as usize]));
+    let motion = scene.motion.as_ref().map_or(&[][..], |motion| &motion.values);
+    let mut by_motion: Vec<u32> = (0..motion.len() as u32).collect();
+    by_motion.sort_by(|&a, &b| motion[b as usize].total_cmp(&motion[a as usize]));
 
     let start = Instant::now();
     let mut stage = DeformationStage::new(&scene);

@@ -11,29 +11,27 @@ use trapeze_cpu::deform::DeformationStage;
 use trapeze_cpu::motion::{MotionOptions, measure_motion};
 use trapeze_cpu::reference::deform::{NetworkOutput, Pose};
 use trapeze_cpu::reference::deform::{apply_output, canonical_pose, evaluate_network};
+use trapeze_formats::read_npz;
 use trapeze_scene::Scene;
 
 /// Golden outputs: (time, splat, output).
 fn goldens() -> Vec<(f32, usize, NetworkOutput)> {
-    let path = sample_scene::repository("tests/goldens/deform_f64.bin");
-    let bytes = std::fs::read(path).unwrap();
-    let u32_at = |i: usize| u32::from_le_bytes(bytes[4 * i..4 * i + 4].try_into().unwrap());
-    let count = u32_at(0) as usize;
-    let values: Vec<f64> = bytes[4 + 4 * count..]
-        .chunks_exact(8)
-        .map(|b| f64::from_le_bytes(b.try_into().unwrap()))
-        .collect();
-    assert_eq!(values.len(), 3 * count * 10);
-    let outputs = values.chunks_exact(10).map(|v| NetworkOutput {
-        displacement: std::array::from_fn(|c| v[c]),
-        d_rotation: std::array::from_fn(|c| v[3 + c]),
-        d_scale: std::array::from_fn(|c| v[7 + c]),
-    });
-    let keys = [0.0, 0.5, 1.0]
-        .into_iter()
-        .flat_map(|t| (0..count).map(move |i| (t, i)))
-        .map(|(t, i)| (t, u32_at(1 + i) as usize));
-    keys.zip(outputs).map(|((t, splat), output)| (t, splat, output)).collect()
+    let arrays = read_npz(&sample_scene::repository("tests/goldens/deform_f64.npz")).unwrap();
+    let splats = arrays["index"].values.to_f64();
+    let mut goldens = Vec::new();
+    for (name, t) in [("t0.0", 0.0), ("t0.5", 0.5), ("t1.0", 1.0)] {
+        assert_eq!(arrays[name].shape, [splats.len(), 10]);
+        let outputs = arrays[name].values.to_f64();
+        for (&splat, v) in splats.iter().zip(outputs.chunks_exact(10)) {
+            let output = NetworkOutput {
+                displacement: std::array::from_fn(|c| v[c]),
+                d_rotation: std::array::from_fn(|c| v[3 + c]),
+                d_scale: std::array::from_fn(|c| v[7 + c]),
+            };
+            goldens.push((t, splat as usize, output));
+        }
+    }
+    goldens
 }
 
 fn flatten(output: &NetworkOutput) -> impl Iterator<Item = f64> {
@@ -42,8 +40,7 @@ fn flatten(output: &NetworkOutput) -> impl Iterator<Item = f64> {
 
 #[test]
 fn the_specification_gives_the_outputs_of_the_training_code() {
-    let Some(folder) = sample_scene::folder() else { return };
-    let scene = sample_scene::load(&folder);
+    let scene = sample_scene::load();
     let network = scene.deformation.as_ref().unwrap();
     for (t, splat, golden) in goldens() {
         let world = scene.splats.positions[splat].map(f64::from);
@@ -57,8 +54,7 @@ fn the_specification_gives_the_outputs_of_the_training_code() {
 
 #[test]
 fn the_fast_stage_is_close_to_the_outputs_of_the_training_code() {
-    let Some(folder) = sample_scene::folder() else { return };
-    let scene = sample_scene::load(&folder);
+    let scene = sample_scene::load();
     let rule = scene.deformation.as_ref().unwrap().rotation_rule;
     let mut stage = DeformationStage::new(&scene);
     let mut worst: f64 = 0.0;
@@ -77,13 +73,12 @@ fn the_fast_stage_is_close_to_the_outputs_of_the_training_code() {
 
 #[test]
 fn the_original_measure_gives_the_mask_of_the_original_app() {
-    let Some(folder) = sample_scene::folder() else { return };
-    let scene = sample_scene::load(&folder);
-    let theirs = sample_scene::f32s(&std::fs::read(folder.join("mask.bin")).unwrap());
+    let scene = sample_scene::load();
+    let theirs = &scene.motion.as_ref().unwrap().values;
     let go_on = |_, _| ControlFlow::Continue(());
     let ours = measure_motion(&scene, &MotionOptions::original(), go_on).unwrap().values;
     let error = |(ours, theirs): (&f32, &f32)| (ours - theirs).abs();
-    let worst = ours.iter().zip(&theirs).map(error).fold(0.0, f32::max);
+    let worst = ours.iter().zip(theirs).map(error).fold(0.0, f32::max);
     println!("largest difference of motion values: {worst:.2e}");
     // Two f32 networks, each within 2e-5 of the exact displacement, at two times.
     assert!(worst < 8e-5, "{worst}");
@@ -91,8 +86,7 @@ fn the_original_measure_gives_the_mask_of_the_original_app() {
 
 #[test]
 fn a_scene_far_from_zero_keeps_its_motion() {
-    let Some(folder) = sample_scene::folder() else { return };
-    let scene = sample_scene::load(&folder);
+    let scene = sample_scene::load();
     let picked: Vec<u32> = (0..scene.len() as u32).step_by(50).collect();
     let near = scene.gather(&picked);
     // The same world coordinates, stored relative to another origin.
