@@ -16,7 +16,8 @@ use trapeze_scene::Scene;
 
 /// Golden outputs: (time, splat, output).
 fn goldens() -> Vec<(f32, usize, NetworkOutput)> {
-    let arrays = read_npz(&sample_scene::repository("tests/goldens/deform_f64.npz")).unwrap();
+    let arrays =
+        read_npz(&sample_scene::repository("tests/goldens/sample-scene/deform_f64.npz")).unwrap();
     let splats = arrays["index"].values.to_f64();
     let mut goldens = Vec::new();
     for (name, t) in [("t0.0", 0.0), ("t0.5", 0.5), ("t1.0", 1.0)] {

@@ -1,7 +1,8 @@
 //! Splats at the near plane, and outside the frustum with extents inside it.
 
+use glam::DVec3;
 use trapeze_cpu::reference::NEAR_PLANE;
-use trapeze_scene::NO_SPLAT;
+use trapeze_scene::{Camera, NO_SPLAT};
 use trapeze_tests::{
     Random, Splat, assert_agrees, assert_agrees_within, camera_at_origin, everything,
     rounding_bound, scene_of,
@@ -28,6 +29,25 @@ fn a_splat_is_drawn_just_before_the_near_plane_and_not_at_or_behind_it() {
         let frame = assert_agrees(&scene_of(&[splat]), &camera, &everything());
         let centre = frame.top_contributor[24 * 64 + 32];
         assert_eq!(centre, if drawn { 0 } else { NO_SPLAT }, "z = {z}");
+    }
+}
+
+#[test]
+fn splats_at_the_far_end_of_the_numbers_leave_the_image_finite() {
+    // Products and sums of the view transform overflow here; a splat whose view depth f32 cannot
+    // hold has no place in the order and is not drawn.
+    let near = Splat { position: [0.3, 0.1, 3.0], ..Splat::default() };
+    let far = [1e18, 1e20, 1e30, 3e38, f32::MAX];
+    for (eye, target) in [([0.0, 0.0, 0.0], [0.0, 0.0, 1.0]), ([1.0, 2.0, -3.0], [4.0, 5.0, 9.0])] {
+        let camera = Camera::look_at(eye.into(), target.into(), DVec3::Y, 0.8, (64, 48));
+        for z in far {
+            for position in [[0.0, 0.0, z], [z, z, z], [z, 0.0, z], [z, -z, z], [-z, z, z / 2.0]] {
+                for log_scale in [-2.0, 20.0, 88.0] {
+                    let splat = Splat { position, log_scale: [log_scale; 3], logit: 3.0, ..near };
+                    let _ = assert_agrees(&scene_of(&[splat, near]), &camera, &everything());
+                }
+            }
+        }
     }
 }
 

@@ -2,10 +2,10 @@
 
 use trapeze_cpu::RendererOptions;
 use trapeze_cpu::bin::TileSize;
-use trapeze_scene::{Camera, Frame, FrameSettings, Scene, ShDegree};
+use trapeze_scene::{Camera, Frame, FrameSettings, NO_SPLAT, Scene, ShDegree};
 use trapeze_tests::{
-    HeadBiases, Splat, assert_agrees, available_levels, camera_at_origin, cloud, cloud_camera,
-    everything, on_threads, render, scene_of, sliding_network,
+    HeadBiases, Random, Splat, assert_agrees, available_levels, camera_at_origin, cloud,
+    cloud_camera, everything, on_threads, render, scene_of, sliding_network,
 };
 
 /// Images as bits, so that NaN depths compare too.
@@ -93,4 +93,33 @@ fn of_identical_splats_the_lower_index_is_in_front() {
         assert_eq!(r > b, first == front);
         assert_eq!(frame.top_contributor[16 * 33 + 16], 0);
     }
+}
+
+#[test]
+fn long_needles_from_far_outside_are_one_image_for_any_tiles() {
+    // Centres up to 10⁵ pixels outside the image, where f32 knows 10⁻² px, and needles that reach
+    // back into it: which tiles they touch must not be decided more narrowly than which pixels.
+    let camera = camera_at_origin(150, 110);
+    let mut random = Random::new(15);
+    let splats: Vec<Splat> = (0..3000)
+        .map(|_| {
+            let angle = random.between(0.0, std::f32::consts::TAU);
+            let distance = 10f32.powf(random.between(-1.0, 3.0));
+            let (sin, cos) = angle.sin_cos();
+            // Along the line to the image's centre, give or take.
+            let turn = angle + random.signed() * 0.3 / distance.max(1.0);
+            Splat {
+                position: [cos * distance, sin * distance, random.between(0.9, 1.1)],
+                log_scale: [(distance * 0.5).ln(), -9.0, -9.0],
+                rotation: [(turn / 2.0).cos(), 0.0, 0.0, (turn / 2.0).sin()],
+                logit: random.between(-4.0, 0.0),
+                dc: random.vector(1.5),
+            }
+        })
+        .collect();
+    let scene = scene_of(&splats);
+    let frame = render(&scene, &camera, &everything(), RendererOptions::default());
+    let seen = frame.top_contributor.iter().filter(|&&top| top != NO_SPLAT).count();
+    assert!(seen > 10_000, "the needles do not reach the image: {seen} pixels");
+    assert_one_image(&scene, &camera, &everything());
 }

@@ -12,17 +12,17 @@ use trapeze_scene::deformation::Encoding;
 
 use super::group::{GROUP, Group};
 
-/// γ of the positions of one group, into the first `encoding.width()` columns of its rows.
+/// γ of up to [`GROUP`] positions, into the first `encoding.width()` columns of their rows.
 #[simd]
 pub(super) fn encode_group<S: Simd>(
     _: S,
     encoding: Encoding,
-    positions: &[[f64; 3]; GROUP],
+    positions: &[[f64; 3]],
     out: &mut Group,
 ) {
     const VALUES: usize = 3 * GROUP;
     let mut turns = [0.0; VALUES];
-    for (s, position) in positions.iter().enumerate() {
+    for (s, position) in positions.iter().enumerate().take(GROUP) {
         for c in 0..3 {
             turns[3 * s + c] = position[c] * (FRAC_1_PI / 2.0);
             out[s][c] = position[c] as f32;
@@ -81,7 +81,7 @@ mod tests {
         let mut worst: f64 = 0.0;
         let mut exact = vec![0.0; encoding.width()];
         for step in 0..4000 {
-            let positions = std::array::from_fn(|s| {
+            let positions: [[f64; 3]; GROUP] = std::array::from_fn(|s| {
                 std::array::from_fn(|c| {
                     // Every value that an f32 scene can hold is reached through an f32.
                     let share = f64::from(step * 24 + s as u32 * 3 + c as u32) / 96_000.0;

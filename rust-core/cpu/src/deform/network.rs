@@ -17,6 +17,10 @@ use crate::reference::deform::time_features;
 /// Outputs of the heads, in this order: displacement (3) or screw axis (6), rotation (4), scale (3).
 pub(super) const MAX_HEAD_OUTPUTS: usize = 13;
 
+/// Splats that go through the network layer by layer: with eight groups their activations take a
+/// quarter of a megabyte, and the weights of one layer another.
+pub(super) const BATCH: usize = 8 * GROUP;
+
 /// What the heads say about one splat.
 pub(super) type HeadOutputs = [f32; MAX_HEAD_OUTPUTS];
 
@@ -52,28 +56,37 @@ struct HiddenLayer {
 #[derive(Clone, Debug)]
 pub(super) struct TimeTerms([Vec<Row>; 2]);
 
-/// Working memory of one group.
+/// Working memory of a few groups that go through the network layer by layer, so that a layer's
+/// weights are read once for all of them.
 #[derive(Debug)]
 pub(super) struct Scratch {
+    groups: Vec<GroupScratch>,
     encoded: Activations,
-    /// The part of the two input sums that the position gives.
-    position_terms: [Activations; 2],
-    hidden: [Activations; 2],
     heads: Activations,
     no_input: Activations,
 }
 
+#[derive(Debug)]
+struct GroupScratch {
+    /// The part of the two input sums that the position gives.
+    position_terms: [Activations; 2],
+    /// Input and output of the layer in work.
+    hidden: [Activations; 2],
+}
+
 impl Scratch {
-    /// Keeps the position terms of splat `s` of the group.
+    /// Keeps the position terms of splat `s`.
     pub(super) fn store_position_terms(&self, s: usize, kept: &mut [Row]) {
-        let groups = self.position_terms.iter().flat_map(|terms| &terms.rows);
-        kept.iter_mut().zip(groups).for_each(|(row, group)| *row = group[s]);
+        let terms = &self.groups[s / GROUP].position_terms;
+        let groups = terms.iter().flat_map(|terms| &terms.rows);
+        kept.iter_mut().zip(groups).for_each(|(row, group)| *row = group[s % GROUP]);
     }
 
-    /// Sets the position terms of splat `s` of the group.
+    /// Sets the position terms of splat `s`.
     pub(super) fn load_position_terms(&mut self, s: usize, kept: &[Row]) {
-        let groups = self.position_terms.iter_mut().flat_map(|terms| &mut terms.rows);
-        kept.iter().zip(groups).for_each(|(row, group)| group[s] = *row);
+        let terms = &mut self.groups[s / GROUP].position_terms;
+        let groups = terms.iter_mut().flat_map(|terms| &mut terms.rows);
+        kept.iter().zip(groups).for_each(|(row, group)| group[s % GROUP] = *row);
     }
 }
 
@@ -118,12 +131,13 @@ impl PackedNetwork {
         2 * self.hidden_blocks
     }
 
+    /// Working memory for [`BATCH`] splats.
     pub(super) fn scratch(&self) -> Scratch {
-        let hidden = || Activations::new(self.width);
+        let hidden = || [Activations::new(self.width), Activations::new(self.width)];
+        let group = || GroupScratch { position_terms: hidden(), hidden: hidden() };
         Scratch {
+            groups: std::iter::repeat_with(group).take(BATCH / GROUP).collect(),
             encoded: Activations::new(self.position_encoding.width()),
-            position_terms: [hidden(), hidden()],
-            hidden: [hidden(), hidden()],
             heads: Activations::new(MAX_HEAD_OUTPUTS),
             no_input: Activations::new(0),
         }
@@ -142,45 +156,57 @@ impl PackedNetwork {
         }))
     }
 
-    /// Computes `scratch.position_terms` for one group of world positions.
+    /// Computes the position terms of up to [`BATCH`] splats at these world positions.
     #[simd]
     pub(super) fn position_terms<S: Simd>(
         &self,
         simd: S,
-        positions: &[[f64; 3]; GROUP],
+        positions: &[[f64; 3]],
         scratch: &mut Scratch,
     ) {
-        let Scratch { encoded, position_terms, .. } = scratch;
-        encode_group(simd, self.position_encoding, positions, &mut encoded.rows[0]);
-        let start = Start { own: &self.zeros, shared: &self.zero_bias };
-        for (layer, terms) in self.position_layers.iter().zip(position_terms) {
-            apply_layer(simd, layer, encoded, start, Activation::None, terms);
+        let Scratch { groups, encoded, .. } = scratch;
+        for (positions, group) in positions.chunks(GROUP).zip(groups) {
+            encode_group(simd, self.position_encoding, positions, &mut encoded.rows[0]);
+            let start = Start { own: &self.zeros, shared: &self.zero_bias };
+            for (layer, terms) in self.position_layers.iter().zip(&mut group.position_terms) {
+                apply_layer(simd, layer, encoded, start, Activation::None, terms);
+            }
         }
     }
 
-    /// Evaluates one group whose `scratch.position_terms` are set.
+    /// Evaluates up to [`BATCH`] splats whose position terms are in `scratch`.
     #[simd]
     pub(super) fn evaluate<S: Simd>(
         &self,
         simd: S,
         time: &TimeTerms,
         scratch: &mut Scratch,
-    ) -> [HeadOutputs; GROUP] {
-        let Scratch { position_terms, hidden: [h, next], heads, no_input, .. } = scratch;
-        let start = |i: usize| Start { own: &position_terms[i].rows, shared: &time.0[i] };
-        apply_layer(simd, &self.first, no_input, start(0), Activation::Relu, h);
+        outputs: &mut [HeadOutputs],
+    ) {
+        let Scratch { groups, heads, no_input, .. } = scratch;
+        let groups = &mut groups[..outputs.len().div_ceil(GROUP)];
+        for GroupScratch { position_terms, hidden: [h, _] } in &mut *groups {
+            let start = Start { own: &position_terms[0].rows, shared: &time.0[0] };
+            apply_layer(simd, &self.first, no_input, start, Activation::Relu, h);
+        }
         for layer in &self.layers {
-            let start = if layer.after_skip {
-                start(1)
-            } else {
-                Start { own: &self.zeros, shared: &layer.bias }
-            };
-            apply_layer(simd, &layer.weights, h, start, Activation::Relu, next);
-            std::mem::swap(h, next);
+            for GroupScratch { position_terms, hidden: [h, next] } in &mut *groups {
+                let start = if layer.after_skip {
+                    Start { own: &position_terms[1].rows, shared: &time.0[1] }
+                } else {
+                    Start { own: &self.zeros, shared: &layer.bias }
+                };
+                apply_layer(simd, &layer.weights, h, start, Activation::Relu, next);
+                std::mem::swap(h, next);
+            }
         }
         let start = Start { own: &self.zeros, shared: &self.head_bias };
-        apply_layer(simd, &self.heads, h, start, Activation::None, heads);
-        std::array::from_fn(|s| std::array::from_fn(|c| heads.rows[0][s][c]))
+        for (group, outputs) in groups.iter().zip(outputs.chunks_mut(GROUP)) {
+            apply_layer(simd, &self.heads, &group.hidden[0], start, Activation::None, heads);
+            for (row, outputs) in heads.rows[0].iter().zip(outputs) {
+                outputs.copy_from_slice(&row[..MAX_HEAD_OUTPUTS]);
+            }
+        }
     }
 }
 

@@ -7,8 +7,8 @@ use trapeze_scene::{DeformationNetwork, Scene};
 
 use super::apply::{HeadMeaning, apply_outputs};
 use super::deformed::{Deformed, SplatPose};
-use super::group::{BLOCK, GROUP, Row};
-use super::network::{PackedNetwork, TimeTerms};
+use super::group::{BLOCK, Row};
+use super::network::{BATCH, MAX_HEAD_OUTPUTS, PackedNetwork, Scratch, TimeTerms};
 use super::order::spatial_order;
 
 /// Choices that trade memory for time; none of them changes the result.
@@ -27,9 +27,6 @@ impl Default for DeformationOptions {
         Self { level: Level::new(), position_term_budget: 256 << 20 }
     }
 }
-
-/// Splats that one task evaluates. The boundaries never depend on the number of threads.
-const BATCH: usize = 16 * GROUP;
 
 /// Poses the splats of one scene at any time.
 ///
@@ -189,29 +186,29 @@ impl MovingSplats {
     fn compute_position_terms(&self) -> Vec<Row> {
         let rows = self.network.position_term_rows();
         let mut terms = vec![[0.0; BLOCK]; self.order.len() * rows];
-        terms.par_chunks_mut(BATCH * rows).zip(self.all_ranks.par_chunks(BATCH)).for_each(
-            |(terms, ranks)| {
-                let mut scratch = self.network.scratch();
-                for (terms, ranks) in terms.chunks_mut(GROUP * rows).zip(ranks.chunks(GROUP)) {
-                    let positions = self.world_positions(ranks);
-                    dispatch!(self.level, simd => self.network.position_terms(
-                        simd, &positions, &mut scratch));
-                    for (s, rows) in terms.chunks_mut(rows).enumerate() {
-                        scratch.store_position_terms(s, rows);
-                    }
+        terms.par_chunks_mut(BATCH * rows).zip(self.all_ranks.par_chunks(BATCH)).for_each_init(
+            || self.network.scratch(),
+            |scratch, (terms, ranks)| {
+                let positions = self.world_positions(ranks);
+                dispatch!(self.level, simd => {
+                    self.network.position_terms(simd, &positions[..ranks.len()], scratch)
+                });
+                for (s, rows) in terms.chunks_mut(rows).enumerate() {
+                    scratch.store_position_terms(s, rows);
                 }
             },
         );
         terms
     }
 
-    /// World positions of one group; its last splat fills the group up.
-    fn world_positions(&self, ranks: &[u32]) -> [[f64; 3]; GROUP] {
-        std::array::from_fn(|s| {
-            let rank = ranks[s.min(ranks.len() - 1)] as usize;
-            let position = self.canonical.positions[self.order[rank] as usize];
-            std::array::from_fn(|c| f64::from(position[c]) + self.meaning.origin[c])
-        })
+    /// World positions of up to [`BATCH`] splats, in the first entries.
+    fn world_positions(&self, ranks: &[u32]) -> [[f64; 3]; BATCH] {
+        let mut positions = [[0.0; 3]; BATCH];
+        for (position, &rank) in positions.iter_mut().zip(ranks) {
+            let stored = self.canonical.positions[self.order[rank as usize] as usize];
+            *position = std::array::from_fn(|c| f64::from(stored[c]) + self.meaning.origin[c]);
+        }
+        positions
     }
 
     /// Ranks of the splats at `indices`, ascending; `None` when these are all splats.
@@ -242,9 +239,14 @@ impl MovingSplats {
         let ranks = ranks.unwrap_or(&self.all_ranks);
         poses.resize(ranks.len(), SplatPose::default());
         let time = self.network.time_terms(f64::from(time));
-        poses.par_chunks_mut(BATCH).zip(ranks.par_chunks(BATCH)).for_each(|(poses, ranks)| {
-            dispatch!(self.level, simd => self.evaluate_batch(simd, &time, ranks, poses));
-        });
+        poses.par_chunks_mut(BATCH).zip(ranks.par_chunks(BATCH)).for_each_init(
+            || self.network.scratch(),
+            |scratch, (poses, ranks)| {
+                dispatch!(self.level, simd => {
+                    self.evaluate_batch(simd, &time, ranks, scratch, poses)
+                });
+            },
+        );
         let splats = || ranks.iter().map(|&rank| self.order[rank as usize] as usize);
         rayon::join(
             || splats().zip(&poses).for_each(|(i, p)| deformed.positions[i] = p.position),
@@ -264,28 +266,26 @@ impl MovingSplats {
         simd: S,
         time: &TimeTerms,
         ranks: &[u32],
+        scratch: &mut Scratch,
         poses: &mut [SplatPose],
     ) {
-        let mut scratch = self.network.scratch();
-        for (ranks, poses) in ranks.chunks(GROUP).zip(poses.chunks_mut(GROUP)) {
-            match &self.position_terms {
-                PositionTerms::Kept(terms) => {
-                    let rows = self.network.position_term_rows();
-                    for s in 0..GROUP {
-                        let rank = ranks[s.min(ranks.len() - 1)] as usize;
-                        scratch.load_position_terms(s, &terms[rank * rows..(rank + 1) * rows]);
-                    }
-                }
-                PositionTerms::ComputedPerFrame => {
-                    let positions = self.world_positions(ranks);
-                    self.network.position_terms(simd, &positions, &mut scratch);
+        match &self.position_terms {
+            PositionTerms::Kept(terms) => {
+                let rows = self.network.position_term_rows();
+                for (s, &rank) in ranks.iter().enumerate() {
+                    scratch.load_position_terms(s, &terms[rank as usize * rows..][..rows]);
                 }
             }
-            let outputs = self.network.evaluate(simd, time, &mut scratch);
-            for ((&rank, pose), outputs) in ranks.iter().zip(poses).zip(&outputs) {
-                let canonical = self.canonical.pose(self.order[rank as usize] as usize);
-                *pose = apply_outputs(&canonical, outputs, &self.meaning);
+            PositionTerms::ComputedPerFrame => {
+                let positions = self.world_positions(ranks);
+                self.network.position_terms(simd, &positions[..ranks.len()], scratch);
             }
+        }
+        let mut outputs = [[0.0; MAX_HEAD_OUTPUTS]; BATCH];
+        self.network.evaluate(simd, time, scratch, &mut outputs[..ranks.len()]);
+        for ((&rank, pose), outputs) in ranks.iter().zip(poses).zip(&outputs) {
+            let canonical = self.canonical.pose(self.order[rank as usize] as usize);
+            *pose = apply_outputs(&canonical, outputs, &self.meaning);
         }
     }
 }

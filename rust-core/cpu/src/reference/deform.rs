@@ -180,16 +180,26 @@ pub(crate) fn time_features(encoding: Encoding, network: Option<&TimeNetwork>, t
     }
 }
 
-/// W x + b.
+/// W x + b. Each row is summed in the order of its columns.
+///
+/// Such a sum is a chain of dependent additions; four rows side by side take the time of one.
 fn linear(layer: &Linear, x: &[f64]) -> Vec<f64> {
-    layer
-        .weight
-        .chunks_exact(layer.inputs)
-        .zip(&layer.bias)
-        .map(|(row, &b)| {
-            f64::from(b) + row.iter().zip(x).map(|(&w, x)| f64::from(w) * x).sum::<f64>()
-        })
-        .collect()
+    const ROWS: usize = 4;
+    let row = |r: usize| &layer.weight[r * layer.inputs..(r + 1) * layer.inputs];
+    let last = layer.outputs - 1;
+    let mut y = Vec::with_capacity(layer.outputs);
+    for (group, biases) in layer.bias.chunks(ROWS).enumerate() {
+        let rows: [&[f32]; ROWS] =
+            std::array::from_fn(|r| &row((group * ROWS + r).min(last))[..x.len()]);
+        let mut sums = [0.0; ROWS];
+        for (i, x) in x.iter().enumerate() {
+            for (sum, row) in sums.iter_mut().zip(rows) {
+                *sum += f64::from(row[i]) * x;
+            }
+        }
+        y.extend(biases.iter().zip(sums).map(|(&b, sum)| f64::from(b) + sum));
+    }
+    y
 }
 
 /// max(0, x); `f64::max` gives 0 for NaN.
