@@ -2,6 +2,7 @@
 
 pub mod bin;
 pub mod deform;
+mod gradient;
 pub mod motion;
 pub mod project;
 pub mod rasterize;
@@ -9,4 +10,5 @@ pub mod reference;
 mod renderer;
 pub mod sort;
 
+pub use gradient::{ImageGradient, PoseGradients};
 pub use renderer::{Pick, Renderer, RendererOptions, StageTimes};

@@ -53,5 +53,5 @@ pub use motion::{Motion, MotionMeasure, is_dynamic};
 pub use neighbours::{NO_NEIGHBOUR, Neighbours, nearest_neighbour_distances};
 pub use scene::{Features, Scene};
 pub use selection::{ClusterSet, Selection};
-pub use spherical_harmonics::{SH_C0, SH_C1, SH_C2, SH_C3, ShDegree, sh_basis};
+pub use spherical_harmonics::{SH_C0, SH_C1, SH_C2, SH_C3, ShDegree, sh_basis, sh_basis_gradient};
 pub use splats::{Splats, sigmoid};

@@ -62,7 +62,7 @@ struct Share {
     worst_p999: f64,
 }
 
-/// Shares that are compared, percent.
+/// Shares that are compared, percent; the recommended one is then found to a percent.
 const SHARES: [f32; 16] =
     [5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 60.0, 70.0, 80.0, 85.0, 90.0, 95.0];
 /// Views and times on which the worst error is taken; the product is what a share must survive.
@@ -85,7 +85,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), CliError> {
     let scene = Arc::new(scene);
     let views = views(&scene, arguments)?;
     let progress = progress_bar(SHARES.len() as u64, "comparing");
-    let outcomes = compare_static_shares(&scene, &SHARES, &views, &TIMES, |done, _| {
+    let outcomes = compare_static_shares(&scene, &SHARES, &views, &TIMES, |done| {
         progress.set_position(done as u64);
         ControlFlow::Continue(())
     })?;

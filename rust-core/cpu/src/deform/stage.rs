@@ -191,7 +191,7 @@ impl MovingSplats {
             |scratch, (terms, ranks)| {
                 let positions = self.world_positions(ranks);
                 dispatch!(self.level, simd => {
-                    self.network.position_terms(simd, &positions[..ranks.len()], scratch)
+                    self.network.position_terms(simd, &positions[..ranks.len()], scratch);
                 });
                 for (s, rows) in terms.chunks_mut(rows).enumerate() {
                     scratch.store_position_terms(s, rows);
@@ -243,7 +243,7 @@ impl MovingSplats {
             || self.network.scratch(),
             |scratch, (poses, ranks)| {
                 dispatch!(self.level, simd => {
-                    self.evaluate_batch(simd, &time, ranks, scratch, poses)
+                    self.evaluate_batch(simd, &time, ranks, scratch, poses);
                 });
             },
         );

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Instant;
 
-use trapeze_scene::{Camera, Frame, FrameSettings, ImageError, Scene, SceneError};
+use trapeze_scene::{Camera, Frame, FrameSettings, ImageError, Motion, Scene, SceneError};
 
 use crate::Renderer;
 use crate::deform::DeformationStage;
@@ -29,10 +29,45 @@ pub struct ShareOutcome {
     pub speed_up: f64,
 }
 
-/// Compares masked with unmasked frames for each of `percentiles`, over all `views` and `times`.
+/// Compares masked with unmasked frames, over all views and times.
+struct Comparison<'a> {
+    scene: &'a Arc<Scene>,
+    motion: &'a Motion,
+    views: &'a [Camera],
+    times: &'a [f32],
+    renderer: Renderer,
+    /// Unmasked frames.
+    references: Vec<Frame>,
+    /// Median time of the network over an unmasked frame, milliseconds.
+    full_ms: f64,
+}
+
+impl Comparison<'_> {
+    fn share(&mut self, percentile: f32) -> Result<ShareOutcome, SceneError> {
+        let threshold = self.motion.threshold_at_percentile(percentile);
+        let frames = render_all(&mut self.renderer, self.views, self.times, Some(threshold))?;
+        let errors = frames.iter().zip(&self.references);
+        let worst = errors
+            .map(|(frame, reference)| ImageError::between(&frame.color, &reference.color))
+            .reduce(ImageError::worst);
+        let network_ms = network_ms(self.scene, self.times, Some(threshold));
+        Ok(ShareOutcome {
+            percentile,
+            threshold,
+            dynamic_splats: self.motion.dynamic_indices(threshold).len(),
+            worst: worst.unwrap_or(ImageError { psnr: f64::INFINITY, max: 0.0, p999: 0.0 }),
+            network_ms,
+            speed_up: self.full_ms / network_ms,
+        })
+    }
+}
+
+/// Compares masked with unmasked frames for each of `percentiles`, over all `views` and `times`,
+/// and then for the whole percents between the largest share that keeps [`RECOMMENDED_MIN_PSNR`]
+/// and the smallest that does not, by bisection. The outcomes ascend in share.
 ///
-/// `progress` is called after each share with the shares done and their number; when it breaks the
-/// outcomes so far are returned.
+/// `progress` is called after each share with the shares done; when it breaks the outcomes so far
+/// are returned.
 ///
 /// # Errors
 /// [`SceneError`] when the scene has no motion values for its splats, or a camera cannot project.
@@ -41,35 +76,33 @@ pub fn compare_static_shares(
     percentiles: &[f32],
     views: &[Camera],
     times: &[f32],
-    mut progress: impl FnMut(usize, usize) -> ControlFlow<()>,
+    mut progress: impl FnMut(usize) -> ControlFlow<()>,
 ) -> Result<Vec<ShareOutcome>, SceneError> {
     let missing = SceneError::Length { field: "motion values", expected: scene.len(), found: 0 };
     let motion = scene.motion.as_ref().ok_or(missing)?;
     let mut renderer = Renderer::new(scene.clone());
     let references = render_all(&mut renderer, views, times, None)?;
     let full_ms = network_ms(scene, times, None);
+    let mut comparison = Comparison { scene, motion, views, times, renderer, references, full_ms };
     let mut outcomes = Vec::with_capacity(percentiles.len());
-    for (done, &percentile) in percentiles.iter().enumerate() {
-        let threshold = motion.threshold_at_percentile(percentile);
-        let frames = render_all(&mut renderer, views, times, Some(threshold))?;
-        let errors = frames.iter().zip(&references);
-        let worst = errors
-            .map(|(frame, reference)| ImageError::between(&frame.color, &reference.color))
-            .reduce(ImageError::worst);
-        let network_ms = network_ms(scene, times, Some(threshold));
-        outcomes.push(ShareOutcome {
-            percentile,
-            threshold,
-            dynamic_splats: motion.dynamic_indices(threshold).len(),
-            worst: worst.unwrap_or(ImageError { psnr: f64::INFINITY, max: 0.0, p999: 0.0 }),
-            network_ms,
-            speed_up: full_ms / network_ms,
-        });
-        if progress(done + 1, percentiles.len()).is_break() {
+    let mut listed = percentiles.iter().copied();
+    while let Some(percentile) = listed.next().or_else(|| share_between(&outcomes)) {
+        outcomes.push(comparison.share(percentile)?);
+        if progress(outcomes.len()).is_break() {
             break;
         }
     }
+    outcomes.sort_by(|a, b| a.percentile.total_cmp(&b.percentile));
     Ok(outcomes)
+}
+
+/// The whole percent half-way between the recommended share and the next one that was compared;
+/// `None` when they are a percent apart.
+fn share_between(outcomes: &[ShareOutcome]) -> Option<f32> {
+    let kept = recommended_percentile(outcomes);
+    let missed = outcomes.iter().map(|o| o.percentile).filter(|&p| p > kept);
+    let middle = ((kept + missed.reduce(f32::min)?) / 2.0).floor();
+    (middle > kept).then_some(middle)
 }
 
 /// The largest share whose worst view and time keeps [`RECOMMENDED_MIN_PSNR`], when all smaller
@@ -149,5 +182,18 @@ mod tests {
         let outcomes = [outcome(20.0, 55.0), outcome(40.0, 30.0), outcome(60.0, 41.0)];
         assert_eq!(recommended_percentile(&outcomes), 20.0);
         assert_eq!(recommended_percentile(&[outcome(5.0, 10.0)]), 0.0);
+    }
+
+    #[test]
+    fn the_recommendation_is_narrowed_down_to_whole_percents() {
+        let mut outcomes = vec![outcome(80.0, 50.0), outcome(90.0, 30.0)];
+        let mut asked = Vec::new();
+        while let Some(percentile) = share_between(&outcomes) {
+            asked.push(percentile);
+            outcomes.push(outcome(percentile, if percentile <= 86.0 { 41.0 } else { 39.0 }));
+        }
+        assert_eq!(asked, [85.0, 87.0, 86.0]);
+        assert_eq!(recommended_percentile(&outcomes), 86.0);
+        assert_eq!(share_between(&[outcome(95.0, 50.0)]), None);
     }
 }

@@ -60,10 +60,19 @@ pub struct NetworkOutput {
 /// When there is no splat `i`.
 #[must_use]
 pub fn canonical_pose(splats: &Splats, i: usize) -> Pose {
+    activate(
+        splats.positions[i].map(f64::from),
+        splats.log_scales[i].map(f64::from),
+        splats.rotations[i].map(f64::from),
+    )
+}
+
+/// Activates stored parameters: a quaternion of unit length, exp of the log-scale.
+pub(super) fn activate(position: [f64; 3], log_scale: [f64; 3], rotation: [f64; 4]) -> Pose {
     Pose {
-        position: splats.positions[i].map(f64::from),
-        rotation: unit_quaternion(splats.rotations[i].map(f64::from)),
-        scale: splats.log_scales[i].map(|log| at_most_max_scale(f64::from(log).exp())),
+        position,
+        rotation: unit_quaternion(rotation),
+        scale: log_scale.map(|log| at_most_max_scale(log.exp())),
     }
 }
 
@@ -122,7 +131,7 @@ pub(crate) fn deformed_scale(scale: f64) -> f64 {
     at_most_max_scale(if scale < MIN_DEFORMED_SCALE { MIN_DEFORMED_SCALE } else { scale })
 }
 
-fn at_most_max_scale(scale: f64) -> f64 {
+pub(super) fn at_most_max_scale(scale: f64) -> f64 {
     let max = f64::from(MAX_SCALE);
     if scale > max { max } else { scale }
 }

@@ -2,10 +2,11 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use trapeze_scene::{Camera, ColorSource, FrameSettings, Scene, is_dynamic, sh_basis, sigmoid};
+use trapeze_scene::{Camera, ColorSource, FrameSettings, Scene, is_dynamic, sigmoid};
 
+use super::SplatParameters;
 use super::deform::{Pose, canonical_pose, deform_splat};
-use crate::project::{MAX_CHANNEL, flat_color, motion_reference};
+use crate::project::{flat_color, motion_reference};
 
 /// A splat at the time of the frame, activated.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,7 +43,9 @@ pub fn pose_scene(scene: &Scene, camera: &Camera, settings: &FrameSettings) -> V
             let position = DVec3::from(position);
             let color = match settings.color_source {
                 ColorSource::SphericalHarmonics => {
-                    view_color(scene, i as usize, position - eye, settings)
+                    let degree = scene.splats.sh_degree.min(settings.max_sh_degree);
+                    let parameters = SplatParameters::of(&scene.splats, i as usize);
+                    parameters.color(position - eye, degree)
                 }
                 source => DVec3::from(
                     flat_color(scene, source, i as usize, heat_reference).map(f64::from),
@@ -60,29 +63,16 @@ pub fn pose_scene(scene: &Scene, camera: &Camera, settings: &FrameSettings) -> V
         .collect()
 }
 
-fn pose(scene: &Scene, i: usize, settings: &FrameSettings) -> Pose {
+pub(super) fn pose(scene: &Scene, i: usize, settings: &FrameSettings) -> Pose {
     let Some(network) = &scene.deformation else { return canonical_pose(&scene.splats, i) };
+    deform_splat(network, &scene.splats, i, scene.origin, network_time(scene, i, settings))
+}
+
+/// The time at which the network sees splat `i`: a static splat of a masked frame rests at 0.
+pub(super) fn network_time(scene: &Scene, i: usize, settings: &FrameSettings) -> f64 {
     let held = match (&scene.motion, settings.static_threshold) {
         (Some(motion), Some(threshold)) => !is_dynamic(motion.values[i], threshold),
         _ => false,
     };
-    let time = if held { 0.0 } else { f64::from(settings.time) };
-    deform_splat(network, &scene.splats, i, scene.origin, time)
-}
-
-/// max(0, 0.5 + Σ cₖ Yₖ(direction)), each channel limited to [`MAX_CHANNEL`]; NaN gives 0.
-fn view_color(scene: &Scene, i: usize, to_splat: DVec3, settings: &FrameSettings) -> DVec3 {
-    let splats = &scene.splats;
-    let degree = splats.sh_degree.min(settings.max_sh_degree);
-    let basis = sh_basis(to_splat.try_normalize().unwrap_or(DVec3::Z).to_array());
-    let mut color = [0.0; 3];
-    for (channel, value) in color.iter_mut().enumerate() {
-        let mut sum = 0.5 + basis[0] * f64::from(splats.sh_dc[i][channel]);
-        for k in 1..degree.coefficients() {
-            sum += basis[k] * f64::from(splats.sh_rest_of(i)[(k - 1) * 3 + channel]);
-        }
-        // `f64::max` returns the other operand for NaN.
-        *value = sum.max(0.0).min(f64::from(MAX_CHANNEL));
-    }
-    DVec3::from(color)
+    if held { 0.0 } else { f64::from(settings.time) }
 }

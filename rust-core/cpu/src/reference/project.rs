@@ -59,11 +59,11 @@ impl ProjectedSplat {
 /// The camera, prepared for projecting.
 #[derive(Clone, Debug)]
 pub struct Projection {
-    camera: Camera,
-    rotation: DMat3,
-    centre: DVec3,
-    slope_min: DVec2,
-    slope_max: DVec2,
+    pub(super) camera: Camera,
+    pub(super) rotation: DMat3,
+    pub(super) centre: DVec3,
+    pub(super) slope_min: DVec2,
+    pub(super) slope_max: DVec2,
 }
 
 impl Projection {
@@ -128,7 +128,7 @@ impl Projection {
 /// The matrix of a quaternion (w, x, y, z), by the formula for unit quaternions; one of another
 /// length is used as it is.
 #[must_use]
-fn rotation_matrix([w, x, y, z]: [f64; 4]) -> DMat3 {
+pub(super) fn rotation_matrix([w, x, y, z]: [f64; 4]) -> DMat3 {
     DMat3::from_cols_array_2d(&[
         [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)],
         [2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)],

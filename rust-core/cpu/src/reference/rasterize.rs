@@ -56,7 +56,7 @@ impl ReferenceFrame {
 /// Relative slack of the comparison with [`TRANSMITTANCE_MIN`]. Two blends at the clamp leave
 /// (1 − 0.99)² = 10⁻⁴, a tie that every overlap of two opaque splats makes; by the rule the second
 /// of them is left out. 1 − 0.99 in f64 is larger than 0.01 by an ulp, in f32 it is smaller.
-const TIE: f64 = 1e-12;
+pub(super) const TIE: f64 = 1e-12;
 
 /// What has been accumulated in one pixel.
 #[derive(Clone, Copy, Debug)]
@@ -148,7 +148,11 @@ pub fn rasterize(splats: &[ProjectedSplat], size: (u32, u32), visit: Visit) -> R
 }
 
 /// Columns of row `y` inside the splat's rectangle, one pixel wider on each side than it has to be.
-fn visited_columns(splat: &ProjectedSplat, y: usize, width: usize) -> std::ops::Range<usize> {
+pub(super) fn visited_columns(
+    splat: &ProjectedSplat,
+    y: usize,
+    width: usize,
+) -> std::ops::Range<usize> {
     let half = splat.half_extent();
     if (y as f64 + 0.5 - splat.centre.y).abs() > half.y + 1.0 {
         return 0..0;

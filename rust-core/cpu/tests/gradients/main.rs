@@ -1,0 +1,5 @@
+//! The backward pass: the f64 specification against differences of the forward pass, and the fast
+//! path against the specification.
+
+mod differences;
+mod scenes;
