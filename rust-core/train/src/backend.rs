@@ -121,6 +121,13 @@ pub enum BackendError {
 /// Calls are carried out in the order in which they are made. After an error other than
 /// [`BackendError::MissingTarget`] the resident state is lost; [`load`](Self::load) starts again.
 pub trait TrainingBackend {
+    /// Bytes of working memory that it takes at most, beyond parameters, moments, gradients and
+    /// photographs, for `splats` splats and views of `pixels` pixels: what the estimate before a run
+    /// is made of. The default is that of a backend which keeps 256 bytes a splat and 64 a pixel.
+    fn working_bytes(&self, splats: u32, pixels: u64) -> u64 {
+        256 * u64::from(splats) + 64 * pixels
+    }
+
     /// Replaces the resident state. Reports of earlier steps are dropped. Photographs stay.
     ///
     /// # Errors

@@ -25,7 +25,7 @@ pub struct InitialSplats {
     pub opacity: f64,
     /// Standard deviation, as a multiple of the mean distance to the nearest neighbours.
     pub scale: f64,
-    /// Number of random splats for datasets without points.
+    /// Number of random splats for datasets without points, at least 1.
     pub random_count: u32,
 }
 
@@ -40,7 +40,7 @@ impl Default for InitialSplats {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Densification {
-    /// Hard cap on the number of splats. More initial splats than this stay.
+    /// Hard cap on the number of splats; of more initial points this many are taken.
     pub max_splats: u32,
     /// Steps between two changes.
     pub interval: u32,
@@ -68,6 +68,28 @@ impl Default for Densification {
             dead_opacity: 0.005,
             noise: PositionNoise::default(),
         }
+    }
+}
+
+/// How the number of splats and the SH degree are found where nobody states them: see
+/// [`trainer::search`](crate::trainer::search).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct BudgetSearch {
+    /// What a doubling of the scene's numbers has to bring on the validation views within one
+    /// trial, dB of PSNR.
+    pub least_gain: f64,
+    /// Growth that is tried, as a share of the splats.
+    pub growth: f64,
+    /// Steps of a trial, as a share of the run.
+    pub trial: f64,
+    /// Every how many-th training view validates until the search has ended.
+    pub validation: u32,
+}
+
+impl Default for BudgetSearch {
+    fn default() -> Self {
+        Self { least_gain: 0.1, growth: 0.4, trial: 1.0 / 14.0, validation: 8 }
     }
 }
 
@@ -99,6 +121,11 @@ pub struct TrainingConfig {
     pub densification: Option<Densification>,
     /// How the first splats look.
     pub initial: InitialSplats,
+    /// Finds the number of splats and the SH degree, up to `densification.max_splats` and
+    /// `sh_degree`; `None` goes to these. Without densification nothing is searched.
+    pub search: Option<BudgetSearch>,
+    /// Steps between two states that a run can return to: after a fault, or when it is killed.
+    pub checkpoint_interval: u32,
 }
 
 impl Default for TrainingConfig {
@@ -124,6 +151,8 @@ impl TrainingConfig {
             regularisers: Regularisers::default(),
             densification: None,
             initial: InitialSplats::default(),
+            search: None,
+            checkpoint_interval: 500,
         }
     }
 
@@ -142,6 +171,12 @@ impl TrainingConfig {
             initial: InitialSplats { opacity: 0.5, scale: 0.1, ..InitialSplats::default() },
             ..Self::fixed(steps)
         }
+    }
+
+    /// As [`growing`](Self::growing), but only to what the scene needs; `ceiling` bounds the search.
+    #[must_use]
+    pub fn automatic(steps: u32, ceiling: u32) -> Self {
+        Self { search: Some(BudgetSearch::default()), ..Self::growing(steps, ceiling) }
     }
 
     /// The highest SH degree.
@@ -194,7 +229,28 @@ impl TrainingConfig {
         in_range("adam.epsilon", self.adam.epsilon, f64::from(f32::MIN_POSITIVE), 1.0)?;
         in_range("initial.opacity", self.initial.opacity, 1e-6, below_one)?;
         in_range("initial.scale", self.initial.scale, 1e-6, 1e6)?;
+        if self.initial.random_count == 0 {
+            return Err(ConfigError::new("initial.random_count", "at least 1", 0));
+        }
+        if self.checkpoint_interval == 0 {
+            return Err(ConfigError::new("checkpoint_interval", "at least 1", 0));
+        }
+        if let Some(search) = &self.search {
+            search.validate()?;
+        }
         self.densification.as_ref().map_or(Ok(()), Densification::validate)
+    }
+}
+
+impl BudgetSearch {
+    fn validate(&self) -> Result<(), ConfigError> {
+        in_range("search.least_gain", self.least_gain, 0.0, 1e3)?;
+        in_range("search.growth", self.growth, 0.01, 10.0)?;
+        in_range("search.trial", self.trial, 1e-6, 0.5)?;
+        if self.validation < 2 {
+            return Err(ConfigError::new("search.validation", "at least 2", self.validation));
+        }
+        Ok(())
     }
 }
 

@@ -2,10 +2,12 @@
 //!
 //! # The model
 //!
-//! Splats start in the places of points or at random ([`initialise`]). A step renders one view, compares it with its photograph ([`loss`]), carries the gradient back
-//! to the parameters (the backend), and updates them ([`optimizer`]). Every hundred steps the set
-//! of splats changes ([`densify`]). What happens at which step is a [`schedule`] made from a
-//! [`config`]; a run can be stopped and resumed at any step ([`checkpoint`]).
+//! Splats start in the places of points or at random ([`initialise`]). A step renders one view,
+//! compares it with its photograph ([`loss`]), carries the gradient back to the parameters (the
+//! backend), and updates them ([`optimizer`]). Every hundred steps the set of splats changes
+//! ([`densify`]). What happens at which step is a [`schedule`] made from a [`config`]; a run can be
+//! stopped and resumed at any step ([`checkpoint`]). [`trainer`] puts all of it together, and
+//! [`evaluation`] says how good the result is.
 //!
 //! # Why it is arranged like this
 //!
@@ -22,6 +24,7 @@ pub mod backend;
 pub mod checkpoint;
 pub mod config;
 pub mod densify;
+pub mod evaluation;
 mod exponential;
 pub mod initialise;
 pub mod loss;
@@ -30,6 +33,8 @@ mod parameters;
 pub mod random;
 pub mod schedule;
 mod state;
+pub mod trainer;
 
 pub use parameters::{ParameterGroup, zeros_like};
 pub use state::TrainingState;
+pub use trainer::{TrainError, Trainer, TrainerOptions};

@@ -10,8 +10,13 @@ use super::{Checkpoint, read_checkpoint, write_checkpoint};
 const KEPT: usize = 2;
 const SUFFIX: &str = ".checkpoint";
 const PREFIX: &str = "step-";
+const PAUSED: &str = "paused.checkpoint";
 
-/// A folder with the newest checkpoints of one run, `step-<number>.checkpoint`.
+/// A folder with the checkpoints of one run: the two newest that it can return to,
+/// `step-<number>.checkpoint`, and, where it was stopped between two of them, `paused.checkpoint`.
+///
+/// A pause is kept apart because it must not change what a run returns to: a run that was paused
+/// and diverges later goes back as far as the one that was never paused.
 #[derive(Clone, Debug)]
 pub struct CheckpointFolder {
     path: PathBuf,
@@ -31,7 +36,7 @@ impl CheckpointFolder {
     pub fn save(&self, checkpoint: &Checkpoint) -> Result<PathBuf, WriteError> {
         std::fs::create_dir_all(&self.path)
             .map_err(|source| WriteError::Io { path: self.path.clone(), source })?;
-        let path = self.path.join(format!("{PREFIX}{:010}{SUFFIX}", checkpoint.state.step));
+        let path = self.path_of(checkpoint.state.step);
         write_checkpoint(&path, checkpoint)?;
         for (_, old) in self.newest_first().into_iter().skip(KEPT) {
             if let Err(error) = std::fs::remove_file(&old) {
@@ -39,6 +44,59 @@ impl CheckpointFolder {
             }
         }
         Ok(path)
+    }
+
+    /// Saves where a run was stopped, in place of an earlier stop.
+    ///
+    /// # Errors
+    /// [`WriteError`] with the operating system's reason.
+    pub fn save_paused(&self, checkpoint: &Checkpoint) -> Result<PathBuf, WriteError> {
+        let path = self.path.join(PAUSED);
+        write_checkpoint(&path, checkpoint)?;
+        Ok(path)
+    }
+
+    /// The checkpoint of one step.
+    ///
+    /// # Errors
+    /// [`ReadError`] when it is missing or damaged.
+    pub fn load(&self, step: u32) -> Result<Checkpoint, ReadError> {
+        read_checkpoint(&self.path_of(step))
+    }
+
+    /// Where a run goes on that has `good` as its newest good state: the last stop after it, else
+    /// there. A stop before the run was last rolled back is passed over, and so is a damaged one.
+    #[must_use]
+    pub fn load_paused(&self, good: &Checkpoint) -> Option<Checkpoint> {
+        let path = self.path.join(PAUSED);
+        if !path.exists() {
+            return None;
+        }
+        let paused = read_checkpoint(&path)
+            .inspect_err(|error| tracing::warn!("{error}; going on from the checkpoint before it"))
+            .ok()?;
+        let is_newer = paused.state.step > good.state.step;
+        let is_same_line = paused.progress.rollbacks == good.progress.rollbacks
+            && paused.progress.search == good.progress.search;
+        (is_newer && is_same_line).then_some(paused)
+    }
+
+    /// Removes every checkpoint of the run, and the folder when nothing else is in it.
+    ///
+    /// # Errors
+    /// [`WriteError`] with the operating system's reason.
+    pub fn remove(&self) -> Result<(), WriteError> {
+        let checkpoints = self.newest_first().into_iter().map(|(_, path)| path);
+        for path in checkpoints.chain(Some(self.path.join(PAUSED)).filter(|path| path.exists())) {
+            std::fs::remove_file(&path).map_err(|source| WriteError::Io { path, source })?;
+        }
+        // Files that are not ours stay, and the folder with them.
+        let _ = std::fs::remove_dir(&self.path);
+        Ok(())
+    }
+
+    fn path_of(&self, step: u32) -> PathBuf {
+        self.path.join(format!("{PREFIX}{step:010}{SUFFIX}"))
     }
 
     /// The newest checkpoint that can be read; a damaged one is reported and passed over. `None`
@@ -136,6 +194,25 @@ mod tests {
         std::fs::write(folder.path().join("step-0000000001.checkpoint"), b"").unwrap();
         let error = checkpoints.load_newest().unwrap_err().to_string();
         assert!(error.contains("step-0000000002.checkpoint"), "{error}");
+    }
+
+    #[test]
+    fn a_pause_is_taken_up_unless_the_run_went_another_way() {
+        let folder = tempfile::tempdir().unwrap();
+        let checkpoints = CheckpointFolder::new(folder.path().join("run"));
+        checkpoints.save(&checkpoint(500)).unwrap();
+        assert!(checkpoints.load_paused(&checkpoint(500)).is_none());
+        checkpoints.save_paused(&checkpoint(730)).unwrap();
+        assert_eq!(checkpoints.load_newest().unwrap().unwrap().state.step, 500);
+        assert_eq!(checkpoints.load_paused(&checkpoint(500)), Some(checkpoint(730)));
+        assert!(checkpoints.load_paused(&checkpoint(1000)).is_none());
+        let mut rolled_back = checkpoint(500);
+        rolled_back.progress.rollbacks = 1;
+        assert!(checkpoints.load_paused(&rolled_back).is_none());
+        std::fs::write(folder.path().join("run/paused.checkpoint"), b"half").unwrap();
+        assert!(checkpoints.load_paused(&checkpoint(500)).is_none());
+        checkpoints.remove().unwrap();
+        assert!(!folder.path().join("run").exists());
     }
 
     #[test]

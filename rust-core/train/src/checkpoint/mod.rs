@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::TrainingState;
 use crate::config::TrainingConfig;
+use crate::trainer::{Health, Search};
 
 pub use folder::CheckpointFolder;
 pub use format::{read_checkpoint, write_checkpoint};
@@ -30,6 +31,12 @@ pub struct Progress {
     pub origin: [f64; 3],
     /// What the run was trained on, to be compared with the dataset that a resumed run is given.
     pub dataset: String,
+    /// Seconds of work so far. Told to the user, never a ground for a decision.
+    pub seconds: f64,
+    /// What the reports said so far.
+    pub health: Health,
+    /// What the search for the budget has chosen so far, in a run that has one.
+    pub search: Option<Search>,
 }
 
 impl Default for Progress {
@@ -40,6 +47,9 @@ impl Default for Progress {
             extent: 1.0,
             origin: [0.0; 3],
             dataset: String::new(),
+            seconds: 0.0,
+            health: Health::default(),
+            search: None,
         }
     }
 }

@@ -1,0 +1,71 @@
+//! What a run will need, before it starts.
+
+use serde::{Deserialize, Serialize};
+use trapeze_scene::ShDegree;
+
+use super::TrainError;
+use super::views::Views;
+use crate::TrainingState;
+use crate::backend::TrainingBackend;
+use crate::config::TrainingConfig;
+
+const MEGABYTE: u64 = 1 << 20;
+
+/// Bytes that a run takes at its largest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TrainingMemory {
+    /// Parameters, moments and gradients.
+    pub parameters: u64,
+    /// Copies of the state while it is saved or, in a search, compared.
+    pub copies: u64,
+    /// Photographs, decoded.
+    pub photographs: u64,
+    /// The backend's working memory.
+    pub working: u64,
+}
+
+impl TrainingMemory {
+    /// The estimate for a run that starts from `initial` splats.
+    pub(super) fn of(
+        config: &TrainingConfig,
+        views: &Views,
+        backend: &impl TrainingBackend,
+        initial: u32,
+        photograph_budget: u64,
+    ) -> Self {
+        let cap = config.densification.map_or(0, |densification| densification.max_splats);
+        let splats = cap.max(initial);
+        let degree = ShDegree::try_from(config.sh_degree).unwrap_or(ShDegree::Three);
+        let state = TrainingState::bytes(splats.into(), degree);
+        // Three bytes a pixel, once in the backend; what is decoded ahead is bounded by its budget.
+        let photographs = 3 * views.pixels();
+        Self {
+            parameters: state + state / 3,
+            copies: if config.search.is_some() { 2 * state } else { state },
+            photographs: photographs + photograph_budget.min(photographs),
+            working: backend.working_bytes(splats, views.largest()),
+        }
+    }
+
+    /// Sum of all parts.
+    #[must_use]
+    pub fn total(&self) -> u64 {
+        self.parameters + self.copies + self.photographs + self.working
+    }
+
+    /// Refuses what does not fit into `limit` bytes.
+    pub(super) fn check(&self, limit: u64) -> Result<(), TrainError> {
+        if self.total() <= limit {
+            return Ok(());
+        }
+        let megabytes = |bytes: u64| bytes.div_ceil(MEGABYTE);
+        let detail = format!(
+            "parameters {}, copies {}, photographs {}, working memory {}",
+            megabytes(self.parameters),
+            megabytes(self.copies),
+            megabytes(self.photographs),
+            megabytes(self.working),
+        );
+        Err(TrainError::Memory { needed: megabytes(self.total()), detail, limit: limit / MEGABYTE })
+    }
+}

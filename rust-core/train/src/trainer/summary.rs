@@ -1,0 +1,59 @@
+//! What is kept of a run beside its scene.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Search, Trainer, TrainingMemory};
+use crate::backend::TrainingBackend;
+use crate::config::TrainingConfig;
+use crate::evaluation::Evaluation;
+
+/// A run in figures: what it was given, what it decided, what came out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TrainingSummary {
+    /// Steps of the run.
+    pub steps: u32,
+    /// Seconds of work, of all processes of the run.
+    pub seconds: f64,
+    /// Steps by seconds: trials whose steps were not kept lower it.
+    pub steps_per_second: f64,
+    /// Number of splats.
+    pub splats: u32,
+    /// SH degree that was trained.
+    pub sh_degree: u32,
+    /// How often the run went back to a good state because of a fault.
+    pub rollbacks: u32,
+    /// What all learning rates were multiplied by at the end.
+    pub rate_factor: f64,
+    /// The dataset, in numbers.
+    pub dataset: String,
+    /// The estimate that was checked before the start.
+    pub memory: TrainingMemory,
+    /// The settings.
+    pub config: TrainingConfig,
+    /// The choice of the budget, and its evidence.
+    pub search: Option<Search>,
+    /// Figures of the held-out views, if there are any.
+    pub test: Option<Evaluation>,
+}
+
+impl<B: TrainingBackend> Trainer<B> {
+    /// The run so far in figures, without those of held-out views.
+    #[must_use]
+    pub fn summary(&self) -> TrainingSummary {
+        let seconds = self.progress.seconds;
+        TrainingSummary {
+            steps: self.step,
+            seconds,
+            steps_per_second: f64::from(self.step) / seconds.max(f64::MIN_POSITIVE),
+            splats: self.backend.splat_count(),
+            sh_degree: self.sh_degree() as u32,
+            rollbacks: self.progress.rollbacks,
+            rate_factor: self.progress.rate_factor,
+            dataset: self.progress.dataset.clone(),
+            memory: self.memory,
+            config: self.config.clone(),
+            search: self.progress.search.clone(),
+            test: None,
+        }
+    }
+}

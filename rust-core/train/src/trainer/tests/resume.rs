@@ -1,0 +1,111 @@
+//! Killed and paused runs end as the uninterrupted one does.
+
+use trapeze_scene::Scene;
+
+use super::mosaic::{Failure, Failures};
+use super::*;
+
+fn failing(at: Option<u32>) -> Mosaic {
+    let failures: Failures = Failures::default();
+    if let Some(step) = at {
+        failures.lock().unwrap().insert(step, Failure::LossAbove(0.01));
+    }
+    Mosaic { failures, ..Mosaic::default() }
+}
+
+fn uninterrupted(config: &TrainingConfig, fault: Option<u32>) -> Scene {
+    let place = Workplace::new();
+    let mut trainer = place.start(config.clone(), failing(fault));
+    finish(&mut trainer);
+    trainer.scene().unwrap()
+}
+
+/// The same run, given up at each of `stops` (steps of work, not of progress) and taken up again
+/// by another trainer; saved before where `save` says so.
+fn interrupted(config: &TrainingConfig, fault: Option<u32>, stops: &[u32], save: bool) -> Scene {
+    let place = Workplace::new();
+    let mut trainer = place.start(config.clone(), failing(fault));
+    for &stop in stops {
+        trainer.advance(stop, &mut |_| ()).unwrap();
+        if save {
+            trainer.save(&mut |_| ()).unwrap();
+        }
+        trainer = place.resume(config, failing(fault));
+    }
+    finish(&mut trainer);
+    trainer.scene().unwrap()
+}
+
+#[test]
+fn a_killed_run_ends_bit_identical() {
+    let config = config(230);
+    let expected = uninterrupted(&config, None);
+    for stops in [&[1][..], &[49, 3], &[50], &[130, 20, 60], &[229], &[230]] {
+        assert_eq!(interrupted(&config, None, stops, false), expected, "{stops:?}");
+    }
+}
+
+#[test]
+fn a_paused_run_goes_on_where_it_was_and_ends_bit_identical() {
+    let config = config(230);
+    let expected = uninterrupted(&config, None);
+    for stops in [&[1][..], &[49, 3], &[50], &[130, 20, 60], &[229], &[230]] {
+        assert_eq!(interrupted(&config, None, stops, true), expected, "{stops:?}");
+    }
+    let place = Workplace::new();
+    let mut trainer = place.start(config.clone(), Mosaic::default());
+    trainer.advance(130, &mut |_| ()).unwrap();
+    let mut saved = Vec::new();
+    assert!(trainer.save(&mut |event| saved.push(event)).unwrap().is_some());
+    assert!(matches!(saved[..], [Event::Saved { step: 130, .. }]));
+    assert_eq!(place.resume(&config, Mosaic::default()).step(), 130);
+}
+
+#[test]
+fn interruptions_around_a_fault_change_nothing() {
+    let config = config(230);
+    let expected = uninterrupted(&config, Some(130));
+    assert_ne!(expected, uninterrupted(&config, None));
+    for save in [false, true] {
+        // Before the fault, between the fault and its report, right after the roll-back.
+        for stops in [&[129][..], &[131], &[140, 9], &[147, 30], &[120, 15, 15]] {
+            assert_eq!(interrupted(&config, Some(130), stops, save), expected, "{save} {stops:?}");
+        }
+    }
+}
+
+#[test]
+fn a_search_ends_bit_identical_whenever_it_is_interrupted() {
+    let config = super::searches::searching(280);
+    let expected = uninterrupted(&config, None);
+    for save in [false, true] {
+        for stops in [&[25][..], &[39, 41], &[60, 5, 90], &[300]] {
+            assert_eq!(interrupted(&config, None, stops, save), expected, "{save} {stops:?}");
+        }
+    }
+}
+
+#[test]
+fn other_datasets_and_settings_are_refused_by_name() {
+    let place = Workplace::new();
+    drop(place.start(config(230), Mosaic::default()));
+    let refusal = |dataset: &Dataset, config: &TrainingConfig| {
+        let result = Trainer::resume(dataset, config, Mosaic::default(), place.options());
+        result.err().unwrap().to_string()
+    };
+    let other = TrainingConfig { seed: 9, ..config(230) };
+    let message = refusal(&place.dataset, &other);
+    assert_eq!(message, "resume: settings: expected seed 0 as in the checkpoint, found seed 9");
+    let mut moved = place.dataset.clone();
+    moved.views[1].camera.cx += 0.5;
+    let message = refusal(&moved, &config(230));
+    assert!(message.starts_with("resume: dataset: expected 15 views of 16 x 12"), "{message}");
+}
+
+#[test]
+fn there_is_nothing_to_resume_in_an_empty_folder() {
+    let place = Workplace::new();
+    let result =
+        Trainer::resume(&place.dataset, &config(10), Mosaic::default(), place.options()).unwrap();
+    assert!(result.is_none());
+}

@@ -1,0 +1,74 @@
+//! Searching for the budget.
+
+use super::*;
+use crate::config::BudgetSearch;
+use crate::trainer::{Proposal, Trial};
+
+/// 12 splats, far fewer than the 192 pixels need, up to 400.
+pub(super) fn searching(steps: u32) -> TrainingConfig {
+    let mut config = config(steps);
+    config.initial.random_count = 12;
+    config.search = Some(BudgetSearch { growth: 1.0, ..BudgetSearch::default() });
+    if let Some(densification) = &mut config.densification {
+        densification.max_splats = 400;
+    }
+    config
+}
+
+fn trials(events: &[Event]) -> Vec<Trial> {
+    let trial = |event: &Event| match event {
+        Event::Trial(trial) => Some(*trial),
+        _ => None,
+    };
+    events.iter().filter_map(trial).collect()
+}
+
+#[test]
+fn what_pays_is_kept_and_what_does_not_is_undone() {
+    let place = Workplace::new();
+    let mut trainer = place.start(searching(560), Mosaic::default());
+    let events = finish(&mut trainer);
+    let trials = trials(&events);
+    assert!(trials.len() >= 4, "{trials:?}");
+    for trial in &trials {
+        let gain = trial.psnr_with - trial.psnr_without;
+        assert_eq!(trial.kept, gain >= trial.required_gain, "{trial:?}");
+        match trial.proposal {
+            Proposal::Splats(splats) => assert_eq!(splats, 2 * trial.splats),
+            // Bands show nothing in a mosaic.
+            Proposal::ShDegree(degree) => assert!(degree == 1 && gain == 0.0 && !trial.kept),
+        }
+    }
+    let search = trainer.progress().search.clone().unwrap();
+    assert_eq!(search.trials, trials);
+    assert!(search.splats > 12 && search.sh_degree == 0, "{search:?}");
+    assert_eq!((trainer.splat_count(), trainer.step()), (search.splats, 560));
+    assert!(events.iter().any(|event| matches!(event, Event::SearchEnded { .. })));
+    assert_eq!(trainer.summary().search, Some(search));
+}
+
+#[test]
+fn validation_views_are_trained_on_only_after_the_search() {
+    let place = Workplace::new();
+    let mut trainer = place.start(searching(560), Mosaic::default());
+    // Of 15 training views with every eighth from the fifth: 4 and 12.
+    let validation = [4, 12];
+    while trainer.progress().search.as_ref().unwrap().ended_at.is_none() {
+        assert!(!trainer.backend().shown.iter().any(|id| validation.contains(id)));
+        trainer.backend().shown.clear();
+        trainer.advance(1, &mut |_| ()).unwrap();
+    }
+    finish(&mut trainer);
+    let shown = &trainer.backend().shown;
+    assert!(validation.iter().all(|id| shown.contains(id)));
+}
+
+#[test]
+fn too_few_views_cannot_be_searched() {
+    let folder = tempfile::tempdir().unwrap();
+    let dataset = capture(folder.path(), 4);
+    let result =
+        Trainer::start(&dataset, searching(100), Mosaic::default(), TrainerOptions::default());
+    let message = result.err().unwrap().to_string();
+    assert!(message.contains("expected at least 4 for a search, found 3"), "{message}");
+}

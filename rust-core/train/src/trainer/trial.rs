@@ -1,0 +1,147 @@
+//! Trials of a search: two branches from one state.
+
+use super::search::{Proposal, Trial};
+use super::{Event, TrainError, Trainer};
+use crate::backend::TrainingBackend;
+use crate::checkpoint::Checkpoint;
+use crate::config::Background;
+use crate::evaluation::psnr_of;
+
+/// What 8-bit photographs cannot tell from equality, dB.
+const HIGHEST_PSNR: f64 = 100.0;
+
+/// A trial that is going on, from the good state.
+pub(super) struct RunningTrial {
+    pub(super) proposal: Proposal,
+    /// The step at which both branches end.
+    pub(super) end: u32,
+    /// The end of the branch that stayed as it was; from then on the branch with the change runs.
+    without: Option<Box<Branch>>,
+}
+
+/// The end of a branch.
+struct Branch {
+    checkpoint: Checkpoint,
+    psnr: f64,
+}
+
+impl RunningTrial {
+    /// The change that the present branch makes at its start.
+    pub(super) fn change(&self) -> Option<Proposal> {
+        self.without.as_ref().map(|_| self.proposal)
+    }
+}
+
+impl<B: TrainingBackend> Trainer<B> {
+    /// Begins the trial that is due, or ends the search. Called where no trial is going on.
+    pub(super) fn begin_trial(
+        &mut self,
+        observer: &mut dyn FnMut(Event),
+    ) -> Result<(), TrainError> {
+        let Some(search) = &self.progress.search else { return Ok(()) };
+        let trial_steps = self.config.trial_steps();
+        if search.ended_at.is_some() || self.step == 0 || !self.step.is_multiple_of(trial_steps) {
+            return Ok(());
+        }
+        let proposal = search
+            .next_proposal(&self.config)
+            .filter(|_| self.config.has_time_for_trial(self.step));
+        if proposal.is_none() {
+            self.end_search(observer);
+        }
+        if !self.make_good(observer)? {
+            return Ok(());
+        }
+        self.trial = proposal.map(|proposal| RunningTrial {
+            proposal,
+            end: self.step + trial_steps,
+            without: None,
+        });
+        Ok(())
+    }
+
+    fn end_search(&mut self, observer: &mut dyn FnMut(Event)) {
+        let step = self.step;
+        if let Some(search) = &mut self.progress.search {
+            search.ended_at = Some(step);
+            let (splats, sh_degree) = (search.splats, search.sh_degree);
+            observer(Event::SearchEnded { step, splats, sh_degree });
+        }
+        self.views.set_searching(false);
+    }
+
+    /// Goes from one branch to the other, or decides, where the present branch is at its end.
+    pub(super) fn continue_trial(
+        &mut self,
+        observer: &mut dyn FnMut(Event),
+    ) -> Result<(), TrainError> {
+        if self.trial.as_ref().is_none_or(|trial| self.step < trial.end) {
+            return Ok(());
+        }
+        if !self.settle(observer)? {
+            return Ok(());
+        }
+        let psnr = self.validation_psnr()?;
+        let Some(mut trial) = self.trial.take() else { return Ok(()) };
+        match trial.without.take() {
+            None => {
+                let branch = Branch { checkpoint: self.capture()?, psnr };
+                trial.without = Some(Box::new(branch));
+                self.trial = Some(trial);
+                self.enter(self.anchor.get()?)
+            }
+            Some(without) => self.decide(&trial, *without, psnr, observer),
+        }
+    }
+
+    fn decide(
+        &mut self,
+        trial: &RunningTrial,
+        without: Branch,
+        psnr_with: f64,
+        observer: &mut dyn FnMut(Event),
+    ) -> Result<(), TrainError> {
+        let (Some(search), Some(settings)) = (&self.progress.search, &self.config.search) else {
+            return Ok(());
+        };
+        let required_gain = search.required_gain(trial.proposal, settings);
+        let steps = self.config.trial_steps();
+        let outcome = Trial {
+            step: trial.end - steps,
+            steps,
+            splats: search.splats,
+            sh_degree: search.sh_degree,
+            proposal: trial.proposal,
+            psnr_without: without.psnr,
+            psnr_with,
+            required_gain,
+            kept: psnr_with - without.psnr >= required_gain,
+        };
+        if !outcome.kept {
+            self.enter(without.checkpoint)?;
+        }
+        if let Some(search) = &mut self.progress.search {
+            search.record(outcome);
+        }
+        observer(Event::Trial(outcome));
+        Ok(())
+    }
+
+    /// Mean PSNR of the views that were set aside, dB.
+    fn validation_psnr(&mut self) -> Result<f64, TrainError> {
+        let background = match self.config.background {
+            Background::Fixed(color) => color,
+            Background::Random => [1.0; 3],
+        };
+        let ids = self.views.validation().to_vec();
+        let mut sum = 0.0;
+        for &id in &ids {
+            let target = self.photographs.target(id)?;
+            let view = self.views.view(id).clone();
+            let frame = self.render(&view.camera, view.time)?;
+            sum += psnr_of(&frame.color, &target, background);
+        }
+        // Finite, so that it survives JSON: equal images, and masks that leave nothing.
+        Ok((sum / ids.len().max(1) as f64).max(0.0).min(HIGHEST_PSNR))
+    }
+}
