@@ -49,3 +49,89 @@ pub(crate) fn reset_like(gradients: &mut Splats, splats: &Splats) {
     zero(&mut gradients.sh_rest, splats.sh_rest.len());
     gradients.sh_degree = splats.sh_degree;
 }
+
+/// Splats that one task carries back; fixed, like every other cut.
+const CHUNK: usize = 1024;
+
+/// The gradients of consecutive splats.
+pub(crate) struct GradientChunk<'a> {
+    /// Index of the first.
+    pub(crate) first: usize,
+    pub(crate) positions: &'a mut [[f32; 3]],
+    pub(crate) log_scales: &'a mut [[f32; 3]],
+    pub(crate) rotations: &'a mut [[f32; 4]],
+    pub(crate) opacity_logits: &'a mut [f32],
+    pub(crate) sh_dc: &'a mut [[f32; 3]],
+    sh_rest: &'a mut [f32],
+    pub(crate) poses: Option<PoseChunk<'a>>,
+}
+
+/// The pose gradients of consecutive splats.
+pub(crate) struct PoseChunk<'a> {
+    pub(crate) positions: &'a mut [[f32; 3]],
+    pub(crate) rotations: &'a mut [[f32; 4]],
+    pub(crate) scales: &'a mut [[f32; 3]],
+}
+
+impl GradientChunk<'_> {
+    pub(crate) fn len(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// The higher SH bands of entry `at`.
+    pub(crate) fn sh_rest_of(&mut self, at: usize) -> &mut [f32] {
+        let stride = self.sh_rest.len() / self.positions.len();
+        &mut self.sh_rest[at * stride..(at + 1) * stride]
+    }
+}
+
+/// Cuts gradients into chunks that can be written side by side. `poses` takes the length of the
+/// splats.
+pub(crate) fn gradient_chunks<'a>(
+    splats: &'a mut Splats,
+    poses: Option<&'a mut PoseGradients>,
+) -> Vec<GradientChunk<'a>> {
+    let n = splats.len();
+    let stride = splats.sh_rest_stride();
+    let mut rest = &mut splats.sh_rest[..];
+    let mut poses = poses.map(|poses| {
+        poses.positions.clear();
+        poses.positions.resize(n, [0.0; 3]);
+        poses.rotations.clear();
+        poses.rotations.resize(n, [0.0; 4]);
+        poses.scales.clear();
+        poses.scales.resize(n, [0.0; 3]);
+        (
+            poses.positions.chunks_mut(CHUNK),
+            poses.rotations.chunks_mut(CHUNK),
+            poses.scales.chunks_mut(CHUNK),
+        )
+    });
+    let mut log_scales = splats.log_scales.chunks_mut(CHUNK);
+    let mut rotations = splats.rotations.chunks_mut(CHUNK);
+    let mut opacity_logits = splats.opacity_logits.chunks_mut(CHUNK);
+    let mut sh_dc = splats.sh_dc.chunks_mut(CHUNK);
+    splats
+        .positions
+        .chunks_mut(CHUNK)
+        .zip((0..).step_by(CHUNK))
+        .map(|(positions, first)| {
+            let (sh_rest, after) = std::mem::take(&mut rest).split_at_mut(positions.len() * stride);
+            rest = after;
+            GradientChunk {
+                first,
+                positions,
+                log_scales: log_scales.next().unwrap_or_default(),
+                rotations: rotations.next().unwrap_or_default(),
+                opacity_logits: opacity_logits.next().unwrap_or_default(),
+                sh_dc: sh_dc.next().unwrap_or_default(),
+                sh_rest,
+                poses: poses.as_mut().map(|(positions, rotations, scales)| PoseChunk {
+                    positions: positions.next().unwrap_or_default(),
+                    rotations: rotations.next().unwrap_or_default(),
+                    scales: scales.next().unwrap_or_default(),
+                }),
+            }
+        })
+        .collect()
+}

@@ -2,13 +2,18 @@
 
 pub mod bin;
 pub mod deform;
+mod deform_backward;
+mod differentiable;
 mod gradient;
 pub mod motion;
 pub mod project;
+mod project_backward;
 pub mod rasterize;
+pub mod rasterize_backward;
 pub mod reference;
 mod renderer;
 pub mod sort;
 
+pub use differentiable::DifferentiableRenderer;
 pub use gradient::{ImageGradient, PoseGradients};
 pub use renderer::{Pick, Renderer, RendererOptions, StageTimes};

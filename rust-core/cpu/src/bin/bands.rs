@@ -7,9 +7,6 @@ use rayon::prelude::*;
 use super::TileSize;
 use crate::project::ProjectedSplat;
 
-/// Splats that one task bins: fixed, so that lists never depend on the number of threads.
-const CHUNK: usize = 8192;
-
 /// A splat in a band.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BandEntry {
@@ -29,6 +26,14 @@ pub struct BandLists {
 }
 
 impl BandLists {
+    /// Splats that one task bins: fixed, so that lists never depend on the number of threads.
+    pub(crate) const CHUNK: usize = 8192;
+
+    /// The entries of the splats of one chunk (ranks from `chunk * CHUNK`), by band.
+    pub(crate) fn chunk(&self, chunk: usize) -> &[Vec<BandEntry>] {
+        &self.chunks[chunk]
+    }
+
     /// The splats in a band, ascending in rank.
     pub fn band(&self, band: usize) -> impl Iterator<Item = BandEntry> + '_ {
         self.chunks.iter().flat_map(move |bands| bands[band].iter().copied())
@@ -44,10 +49,10 @@ pub fn bin_bands(
     tile: TileSize,
 ) -> BandLists {
     let chunks = splats
-        .par_chunks(CHUNK)
+        .par_chunks(BandLists::CHUNK)
         .enumerate()
         .map(|(chunk, splats)| {
-            dispatch!(level, simd => bin_chunk(simd, splats, (chunk * CHUNK) as u32, size, tile))
+            dispatch!(level, simd => bin_chunk(simd, splats, (chunk * BandLists::CHUNK) as u32, size, tile))
         })
         .collect();
     BandLists { chunks }

@@ -48,10 +48,9 @@ pub struct BandTiles {
 }
 
 impl BandTiles {
-    /// Makes the lists of a band's tiles, in an image `width` pixels wide.
+    /// Makes the lists of a band's tiles, in an image `width` pixels wide: ranks of splats.
     pub fn fill(&mut self, entries: impl Iterator<Item = BandEntry>, width: u32, tile: TileSize) {
-        self.lists.iter_mut().for_each(Vec::clear);
-        self.lists.resize_with(width.div_ceil(tile.width) as usize, Vec::new);
+        self.clear(width, tile);
         for entry in entries {
             for list in &mut self.lists[entry.first_tile as usize..=entry.last_tile as usize] {
                 list.push(entry.rank);
@@ -59,7 +58,22 @@ impl BandTiles {
         }
     }
 
-    /// Ranks of the splats of each tile, left to right.
+    /// The same with the place of each splat in `entries` instead of its rank.
+    pub(crate) fn fill_positions(&mut self, entries: &[BandEntry], width: u32, tile: TileSize) {
+        self.clear(width, tile);
+        for (position, entry) in (0u32..).zip(entries) {
+            for list in &mut self.lists[entry.first_tile as usize..=entry.last_tile as usize] {
+                list.push(position);
+            }
+        }
+    }
+
+    fn clear(&mut self, width: u32, tile: TileSize) {
+        self.lists.iter_mut().for_each(Vec::clear);
+        self.lists.resize_with(width.div_ceil(tile.width) as usize, Vec::new);
+    }
+
+    /// The list of each tile, left to right.
     pub fn lists(&self) -> impl Iterator<Item = &[u32]> {
         self.lists.iter().map(Vec::as_slice)
     }

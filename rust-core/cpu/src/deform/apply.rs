@@ -33,10 +33,12 @@ pub(super) fn apply_outputs(
     };
     let sum =
         std::array::from_fn(|c| f64::from(canonical.rotation[c]) + f64::from(outputs[rest + c]));
+    let (rotation, rotation_length) = combined_rotation(sum, meaning.rotation_rule);
     let d_scale: [f64; 3] = three(rest + 4);
     SplatPose {
         position: std::array::from_fn(|c| (position[c] + displacement[c]) as f32),
-        rotation: combined_rotation(sum, meaning.rotation_rule).map(|c| c as f32),
+        rotation: rotation.map(|c| c as f32),
+        rotation_length: rotation_length as f32,
         scale: std::array::from_fn(|c| {
             deformed_scale(f64::from(canonical.scale[c]) + d_scale[c]) as f32
         }),

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use trapeze_scene::Splats;
 
-use crate::reference::deform::canonical_pose;
+use crate::reference::deform::{canonical_pose, quaternion_length};
 
 /// Splats in world space at one time, activated: one entry per splat in every array.
 ///
@@ -17,6 +17,9 @@ pub struct Deformed {
     /// Quaternions (w, x, y, z) that enter the covariance as they are: of unit length, except
     /// under [`RotationRule::AsTrained`](trapeze_scene::deformation::RotationRule::AsTrained).
     pub rotations: Vec<[f32; 4]>,
+    /// Length of what was normalised to give the rotation, for the way back; 0 where it had no
+    /// direction and the identity stands in.
+    pub rotation_lengths: Vec<f32>,
     /// Standard deviations along the local axes, world units, in 0 ..= [`MAX_SCALE`]; NaN for a
     /// splat whose scale is not a number (the projection stage leaves it out).
     pub scales: Vec<[f32; 3]>,
@@ -34,6 +37,8 @@ pub struct SplatPose {
     pub position: [f32; 3],
     /// Quaternion (w, x, y, z).
     pub rotation: [f32; 4],
+    /// Length of what was normalised to give the rotation; 0 where it had no direction.
+    pub rotation_length: f32,
     /// Standard deviations along the local axes.
     pub scale: [f32; 3],
 }
@@ -42,11 +47,31 @@ impl Deformed {
     /// The splats as they are stored, activated: the state in scenes without a network.
     #[must_use]
     pub fn from_static(splats: &Splats) -> Self {
-        let poses = || (0..splats.len()).into_par_iter().map(|i| canonical_pose(splats, i));
-        Self {
-            positions: splats.positions.clone(),
-            rotations: poses().map(|pose| pose.rotation.map(|c| c as f32)).collect(),
-            scales: poses().map(|pose| pose.scale.map(|c| c as f32)).collect(),
+        let mut deformed = Self::default();
+        deformed.set_static(splats);
+        deformed
+    }
+
+    /// The same into arrays that are there, for splats that change from frame to frame.
+    pub(crate) fn set_static(&mut self, splats: &Splats) {
+        let indices = || (0..splats.len()).into_par_iter().with_min_len(4096);
+        self.positions.clone_from(&splats.positions);
+        let pose = |i: usize| Self::static_pose(splats, i);
+        indices().map(|i| pose(i).scale).collect_into_vec(&mut self.scales);
+        indices()
+            .map(|i| (pose(i).rotation, pose(i).rotation_length))
+            .unzip_into_vecs(&mut self.rotations, &mut self.rotation_lengths);
+    }
+
+    /// The pose of one splat as it is stored, activated.
+    pub(crate) fn static_pose(splats: &Splats, i: usize) -> SplatPose {
+        let pose = canonical_pose(splats, i);
+        let length = quaternion_length(splats.rotations[i].map(f64::from));
+        SplatPose {
+            position: splats.positions[i],
+            rotation: pose.rotation.map(|c| c as f32),
+            rotation_length: length as f32,
+            scale: pose.scale.map(|c| c as f32),
         }
     }
 
@@ -59,6 +84,7 @@ impl Deformed {
         SplatPose {
             position: self.positions[i],
             rotation: self.rotations[i],
+            rotation_length: self.rotation_lengths[i],
             scale: self.scales[i],
         }
     }

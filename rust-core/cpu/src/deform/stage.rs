@@ -253,6 +253,7 @@ impl MovingSplats {
             || {
                 for (i, pose) in splats().zip(&poses) {
                     deformed.rotations[i] = pose.rotation;
+                    deformed.rotation_lengths[i] = pose.rotation_length;
                     deformed.scales[i] = pose.scale;
                 }
             },

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use trapeze_scene::{Camera, ColorSource, FrameSettings, Scene, ShDegree, sigmoid};
+use trapeze_scene::{Camera, ColorSource, FrameSettings, Scene, ShDegree, Splats, sigmoid};
 
 use super::ProjectedSplat;
 use super::color::{flat_color, limit_channel, motion_reference, sh_basis_f32, sh_color};
@@ -14,7 +14,7 @@ use crate::reference::{ALPHA_MIN, JACOBIAN_MARGIN, NEAR_PLANE};
 const CHUNK: usize = 4096;
 
 /// What the projection needs of a scene and does not change with the frame.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct ProjectionStage {
     /// Opacity of each splat, 0–1; 0 for NaN logits.
     opacities: Vec<f32>,
@@ -26,39 +26,53 @@ impl ProjectionStage {
     /// Prepares a scene: opacities, and the SH bands that are not zero everywhere.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
-        Self {
-            opacities: scene
-                .splats
-                .opacity_logits
-                .iter()
-                .map(|&logit| sigmoid(f64::from(logit)) as f32)
-                .collect(),
+        let mut stage = Self {
+            opacities: Vec::new(),
             motion_reference: motion_reference(scene),
             sh_degree: scene.splats.used_sh_degree(),
-        }
+        };
+        stage.set_opacities(&scene.splats.opacity_logits);
+        stage
+    }
+
+    /// Prepares splats that change from frame to frame: all their SH bands count, zero or not.
+    pub(crate) fn set_splats(&mut self, splats: &Splats) {
+        self.set_opacities(&splats.opacity_logits);
+        self.sh_degree = splats.sh_degree;
+        self.motion_reference = 1.0;
+    }
+
+    /// Opacity of each splat, 0–1.
+    pub(crate) fn opacities(&self) -> &[f32] {
+        &self.opacities
+    }
+
+    fn set_opacities(&mut self, logits: &[f32]) {
+        let opacity = |&logit: &f32| sigmoid(f64::from(logit)) as f32;
+        logits.par_iter().with_min_len(CHUNK).map(opacity).collect_into_vec(&mut self.opacities);
     }
 }
 
 /// The camera in single precision, arranged so that nothing large is subtracted from something
 /// large: the position is split into two floats, and splats are taken relative to the first part.
 #[derive(Clone, Copy, Debug)]
-struct View {
-    rotation: [[f32; 3]; 3],
+pub(crate) struct View {
+    pub(crate) rotation: [[f32; 3]; 3],
     centre_high: [f32; 3],
     centre_low: [f32; 3],
-    focal: [f32; 2],
+    pub(crate) focal: [f32; 2],
     principal: [f32; 2],
     /// Camera centre and third row of the rotation, for the depth.
     centre: [f64; 3],
     forward: [f64; 3],
-    slope_min: [f32; 2],
-    slope_max: [f32; 2],
+    pub(crate) slope_min: [f32; 2],
+    pub(crate) slope_max: [f32; 2],
     /// Pixel bounds of what is drawn: splats whose box lies outside are dropped.
     image: [f32; 2],
 }
 
 impl View {
-    fn new(camera: &Camera) -> Self {
+    pub(crate) fn new(camera: &Camera) -> Self {
         let centre = camera.centre();
         let high = centre.to_array().map(|v| v as f32);
         let low = (centre - DVec3::from(high.map(f64::from))).to_array().map(|v| v as f32);
@@ -95,6 +109,26 @@ impl View {
     #[inline(always)]
     fn depth(&self, position: [f32; 3]) -> f64 {
         (0..3).map(|c| self.forward[c] * (f64::from(position[c]) - self.centre[c])).sum()
+    }
+
+    /// The vector from the camera to a position, world axes.
+    #[inline(always)]
+    pub(crate) fn offset(&self, position: [f32; 3]) -> [f32; 3] {
+        std::array::from_fn(|c| (position[c] - self.centre_high[c]) - self.centre_low[c])
+    }
+
+    /// x/z or y/z as the Jacobian takes it.
+    #[inline(always)]
+    pub(crate) fn limited_slope(&self, axis: usize, slope: f32) -> f32 {
+        slope.clamp(self.slope_min[axis], self.slope_max[axis])
+    }
+
+    /// A row of J W, pixels per world unit: J has f/z on the axis and −f·slope/z on z.
+    #[inline(always)]
+    pub(crate) fn jacobian_row(&self, axis: usize, limited: f32, inverse_z: f32) -> [f32; 3] {
+        let gain = self.focal[axis] * inverse_z;
+        let w = &self.rotation;
+        std::array::from_fn(|c| gain * (w[axis][c] - limited * w[2][c]))
     }
 }
 
@@ -138,8 +172,7 @@ impl Input<'_> {
             return None;
         }
         let position = self.deformed.positions[i];
-        let offset: [f32; 3] =
-            std::array::from_fn(|c| (position[c] - view.centre_high[c]) - view.centre_low[c]);
+        let offset = view.offset(position);
         let p = multiply(&view.rotation, offset);
         // False for NaN.
         if !(p[2] > NEAR_PLANE as f32) {
@@ -184,12 +217,8 @@ impl Input<'_> {
     ) -> [[f32; 3]; 2] {
         let scale = self.deformed.scales[i];
         let rotation = rotation_matrix(self.deformed.rotations[i]);
-        let w = &view.rotation;
         std::array::from_fn(|axis| {
-            let limited = slope[axis].clamp(view.slope_min[axis], view.slope_max[axis]);
-            let gain = view.focal[axis] * inverse_z;
-            // Row of J W: J has f/z on the axis and −f·slope/z on z.
-            let row: [f32; 3] = std::array::from_fn(|c| gain * (w[axis][c] - limited * w[2][c]));
+            let row = view.jacobian_row(axis, view.limited_slope(axis, slope[axis]), inverse_z);
             std::array::from_fn(|column| {
                 let dot = row[0] * rotation[0][column]
                     + row[1] * rotation[1][column]
@@ -215,7 +244,7 @@ impl Input<'_> {
 
 /// v / ‖v‖, or z where v has no direction.
 #[inline(always)]
-fn direction(v: [f32; 3]) -> [f32; 3] {
+pub(crate) fn direction(v: [f32; 3]) -> [f32; 3] {
     let length_squared = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
     if length_squared > f32::MIN_POSITIVE && length_squared < f32::MAX {
         let inverse = 1.0 / length_squared.sqrt();
@@ -232,13 +261,13 @@ fn direction(v: [f32; 3]) -> [f32; 3] {
 }
 
 #[inline(always)]
-fn multiply(m: &[[f32; 3]; 3], v: [f32; 3]) -> [f32; 3] {
+pub(crate) fn multiply(m: &[[f32; 3]; 3], v: [f32; 3]) -> [f32; 3] {
     std::array::from_fn(|r| m[r][0] * v[0] + m[r][1] * v[1] + m[r][2] * v[2])
 }
 
 /// Row-major matrix of a quaternion (w, x, y, z), by the formula for unit quaternions.
 #[inline(always)]
-fn rotation_matrix([w, x, y, z]: [f32; 4]) -> [[f32; 3]; 3] {
+pub(crate) fn rotation_matrix([w, x, y, z]: [f32; 4]) -> [[f32; 3]; 3] {
     [
         [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
         [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],

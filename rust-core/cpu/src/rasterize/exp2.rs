@@ -14,7 +14,7 @@ const COEFFICIENTS: [f32; 6] =
 ///
 /// `N` vectors go through each step together, so that their chains of dependent operations overlap.
 #[inline(always)]
-pub(super) fn exp2<S: Simd, const N: usize>(simd: S, x: [f32x16<S>; N]) -> [f32x16<S>; N] {
+pub(crate) fn exp2<S: Simd, const N: usize>(simd: S, x: [f32x16<S>; N]) -> [f32x16<S>; N] {
     let mut power = [f32x16::splat(simd, COEFFICIENTS[5]); N];
     for &coefficient in COEFFICIENTS[..5].iter().rev() {
         for i in 0..N {

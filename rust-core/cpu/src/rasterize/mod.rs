@@ -4,4 +4,6 @@ mod exp2;
 mod stage;
 mod tile;
 
+pub(crate) use exp2::exp2;
 pub use stage::{Outputs, Target, rasterize};
+pub(crate) use tile::TileRect;

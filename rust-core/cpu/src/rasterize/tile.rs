@@ -24,7 +24,7 @@ pub(super) struct Band<'a> {
 /// Position and size of a tile, in pixels; `width` is a multiple of 16 and may reach over the edge
 /// of the image.
 #[derive(Clone, Copy)]
-pub(super) struct TileRect {
+pub(crate) struct TileRect {
     pub x: u32,
     /// First row, in the image. It is also the first row of the tile's band.
     pub y: u32,

@@ -27,6 +27,10 @@ use crate::deform::MAX_SCALE;
 /// them have to see the same cancellation.
 pub const MIN_ROTATION_NORM: f64 = 1e-6;
 
+/// A quaternion shorter than this gets no gradient: the derivative of its normalisation grows as
+/// 1 / length and would leave the range of f32.
+pub const MIN_TRAINED_ROTATION_LENGTH: f64 = 1e-12;
+
 /// Smallest linear scale after its delta, world units.
 pub const MIN_DEFORMED_SCALE: f64 = 1e-6;
 
@@ -100,7 +104,7 @@ pub fn apply_output(canonical: &Pose, output: &NetworkOutput, rule: RotationRule
     let sum = std::array::from_fn(|c| canonical.rotation[c] + output.d_rotation[c]);
     Pose {
         position: std::array::from_fn(|c| canonical.position[c] + output.displacement[c]),
-        rotation: combined_rotation(sum, rule),
+        rotation: combined_rotation(sum, rule).0,
         scale: std::array::from_fn(|c| deformed_scale(canonical.scale[c] + output.d_scale[c])),
     }
 }
@@ -108,21 +112,30 @@ pub fn apply_output(canonical: &Pose, output: &NetworkOutput, rule: RotationRule
 /// q / ‖q‖, or the identity where q has no direction.
 #[must_use]
 pub(crate) fn unit_quaternion(q: [f64; 4]) -> [f64; 4] {
-    let norm = q.iter().map(|c| c * c).sum::<f64>().sqrt();
-    if norm.is_finite() && norm > 0.0 { q.map(|c| c / norm) } else { [1.0, 0.0, 0.0, 0.0] }
+    let length = quaternion_length(q);
+    if length > 0.0 { q.map(|c| c / length) } else { [1.0, 0.0, 0.0, 0.0] }
 }
 
-/// What enters the covariance, from normalise(q) + d_q.
+/// ‖q‖; 0 where q is not finite, and so has no direction.
 #[must_use]
-pub(crate) fn combined_rotation(sum: [f64; 4], rule: RotationRule) -> [f64; 4] {
-    let norm = sum.iter().map(|c| c * c).sum::<f64>().sqrt();
-    if !norm.is_finite() || norm < MIN_ROTATION_NORM {
-        return [1.0, 0.0, 0.0, 0.0];
+pub(crate) fn quaternion_length(q: [f64; 4]) -> f64 {
+    let length = q.iter().map(|c| c * c).sum::<f64>().sqrt();
+    if length.is_finite() { length } else { 0.0 }
+}
+
+/// What enters the covariance, from normalise(q) + d_q, and the length of that sum; 0 where it has
+/// no direction.
+#[must_use]
+pub(crate) fn combined_rotation(sum: [f64; 4], rule: RotationRule) -> ([f64; 4], f64) {
+    let length = quaternion_length(sum);
+    if length < MIN_ROTATION_NORM {
+        return ([1.0, 0.0, 0.0, 0.0], 0.0);
     }
-    match rule {
-        RotationRule::Renormalised => sum.map(|c| c / norm),
+    let rotation = match rule {
+        RotationRule::Renormalised => sum.map(|c| c / length),
         RotationRule::AsTrained => sum,
-    }
+    };
+    (rotation, length)
 }
 
 /// Floor and ceiling of a scale that a delta was added to; NaN stays.

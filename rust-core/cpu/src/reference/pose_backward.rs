@@ -8,8 +8,8 @@ use trapeze_scene::{
 };
 
 use super::deform::{
-    MIN_DEFORMED_SCALE, MIN_ROTATION_NORM, NetworkOutput, Pose, at_most_max_scale, canonical_pose,
-    evaluate_network,
+    MIN_DEFORMED_SCALE, MIN_ROTATION_NORM, MIN_TRAINED_ROTATION_LENGTH, NetworkOutput, Pose,
+    at_most_max_scale, canonical_pose, evaluate_network, quaternion_length,
 };
 use super::parameters::{channels_before_limits, direction};
 use super::pose::{network_time, pose};
@@ -69,8 +69,7 @@ fn output_backward(
     gradient: &PosedGradient,
 ) -> ([f64; 4], DVec3) {
     let sum: [f64; 4] = std::array::from_fn(|c| canonical.rotation[c] + output.d_rotation[c]);
-    let norm = sum.iter().map(|c| c * c).sum::<f64>().sqrt();
-    let rotation = if !norm.is_finite() || norm < MIN_ROTATION_NORM {
+    let rotation = if quaternion_length(sum) < MIN_ROTATION_NORM {
         [0.0; 4]
     } else {
         match rule {
@@ -126,12 +125,13 @@ fn log_scale_backward(log_scale: DVec3, gradient: DVec3) -> DVec3 {
     }))
 }
 
-/// ∂L/∂q from ∂L/∂(q / ‖q‖): what is along q has no effect. Zero where q has no direction.
+/// ∂L/∂q from ∂L/∂(q / ‖q‖): what is along q has no effect. Zero below
+/// [`MIN_TRAINED_ROTATION_LENGTH`].
 fn unit_backward(q: [f64; 4], gradient: [f64; 4]) -> [f64; 4] {
-    let norm = q.iter().map(|c| c * c).sum::<f64>().sqrt();
-    if !(norm.is_finite() && norm > 0.0) {
+    let length = quaternion_length(q);
+    if length < MIN_TRAINED_ROTATION_LENGTH {
         return [0.0; 4];
     }
-    let along: f64 = q.iter().zip(gradient).map(|(q, g)| q / norm * g).sum();
-    std::array::from_fn(|c| (gradient[c] - along * (q[c] / norm)) / norm)
+    let along: f64 = q.iter().zip(gradient).map(|(q, g)| q / length * g).sum();
+    std::array::from_fn(|c| (gradient[c] - along * (q[c] / length)) / length)
 }

@@ -2,4 +2,5 @@
 //! path against the specification.
 
 mod differences;
+mod fast;
 mod scenes;

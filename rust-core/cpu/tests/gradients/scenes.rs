@@ -55,7 +55,11 @@ pub(crate) fn camera(size: (u32, u32)) -> Camera {
 
 /// Weights in ±1 for every pixel and channel; zero where the frame was closer than `margin` to a
 /// decision, so that no cut-off is crossed within a difference step.
-pub(crate) fn image_weights(seed: u64, frame: &ReferenceFrame, margin: f64) -> (Vec<[f32; 4]>, Vec<f32>) {
+pub(crate) fn image_weights(
+    seed: u64,
+    frame: &ReferenceFrame,
+    margin: f64,
+) -> (Vec<[f32; 4]>, Vec<f32>) {
     let mut random = Random::new(seed ^ 0xabcd);
     let mut color = Vec::new();
     let mut depth = Vec::new();

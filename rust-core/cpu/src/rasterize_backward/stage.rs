@@ -1,0 +1,136 @@
+//! The backward pass of all tiles of a frame.
+
+use fearless_simd::{Level, dispatch};
+use rayon::prelude::*;
+use trapeze_scene::Frame;
+
+use super::sums::{LANES, SplatSums};
+use super::tile::{BandPixels, StripSplat, backward_tile};
+use crate::bin::{BandEntry, BandLists, BandTiles, TileSize};
+use crate::gradient::ImageGradient;
+use crate::project::ProjectedSplat;
+use crate::rasterize::TileRect;
+
+/// How a frame was rasterised.
+#[derive(Clone, Copy, Debug)]
+pub struct BackwardTarget {
+    /// Tile size.
+    pub tile: TileSize,
+    /// SIMD level.
+    pub level: Level,
+}
+
+/// Working memory of one task.
+#[derive(Default)]
+struct Scratch {
+    entries: Vec<BandEntry>,
+    tiles: BandTiles,
+    strip: Vec<StripSplat>,
+}
+
+/// The sums of every splat of `splats` (in drawing order) for the frame that [`rasterize`] made of
+/// them and ∂L/∂frame.
+///
+/// [`rasterize`]: crate::rasterize::rasterize()
+///
+/// # Panics
+/// When the gradient has another number of pixels than the frame, or asks for depth that the frame
+/// does not have.
+#[must_use]
+pub fn rasterize_backward(
+    splats: &[ProjectedSplat],
+    bands: &BandLists,
+    frame: &Frame,
+    gradient: &ImageGradient<'_>,
+    target: BackwardTarget,
+) -> Vec<SplatSums> {
+    assert!(gradient.fits(frame.color.len()), "one gradient per pixel");
+    if gradient.expected_depth.is_some() {
+        assert_eq!(frame.expected_depth.len(), frame.color.len(), "a frame with depth");
+    }
+    let count = frame.height.div_ceil(target.tile.height()) as usize;
+    let band_sums: Vec<Vec<[f32; LANES]>> = (0..count)
+        .into_par_iter()
+        .map_init(Scratch::default, |scratch, band| {
+            band_sums(splats, bands, band, frame, gradient, target, scratch)
+        })
+        .collect();
+    bands.sum_by_rank(&band_sums, splats.len())
+}
+
+fn band_sums(
+    splats: &[ProjectedSplat],
+    bands: &BandLists,
+    band: usize,
+    frame: &Frame,
+    gradient: &ImageGradient<'_>,
+    target: BackwardTarget,
+    Scratch { entries, tiles, strip }: &mut Scratch,
+) -> Vec<[f32; LANES]> {
+    let size = target.tile;
+    let y = band as u32 * size.height();
+    let height = size.height().min(frame.height - y);
+    let pixels = band_pixels(frame, gradient, (y as usize, height as usize));
+    entries.clear();
+    entries.extend(bands.band(band));
+    tiles.fill_positions(entries, frame.width, size);
+    let mut sums = vec![[0.0; LANES]; entries.len()];
+    for (positions, x) in tiles.lists().zip((0..).step_by(size.width() as usize)) {
+        let tile = TileRect { x, y, width: size.width(), height };
+        let list = (&entries[..], positions);
+        dispatch!(target.level, simd => if pixels.by_depth.is_empty() {
+            backward_tile::<_, false>(simd, splats, list, tile, strip, &pixels, &mut sums);
+        } else {
+            backward_tile::<_, true>(simd, splats, list, tile, strip, &pixels, &mut sums);
+        });
+    }
+    sums
+}
+
+/// The rows of a band; arrays that are not there give empty slices.
+fn band_pixels<'a>(
+    frame: &'a Frame,
+    gradient: &ImageGradient<'a>,
+    (y, height): (usize, usize),
+) -> BandPixels<'a> {
+    let width = frame.width as usize;
+    let rows = y * width..(y + height) * width;
+    BandPixels {
+        width,
+        color: &frame.color[rows.clone()],
+        depth: frame.expected_depth.get(rows.clone()).unwrap_or_default(),
+        by_color: &gradient.color[rows.clone()],
+        by_depth: gradient.expected_depth.map_or(&[], |depth| &depth[rows]),
+    }
+}
+
+impl BandLists {
+    /// Adds up what every splat got in each band, band by band, in drawing order.
+    fn sum_by_rank(&self, band_sums: &[Vec<[f32; LANES]>], splats: usize) -> Vec<SplatSums> {
+        let mut total = vec![SplatSums::default(); splats];
+        // Chunks own disjoint runs of ranks; within a band they follow each other.
+        let mut starts = vec![0; band_sums.len()];
+        let mut tasks = Vec::new();
+        for (chunk, total) in total.chunks_mut(Self::CHUNK).enumerate() {
+            tasks.push((chunk, total, starts.clone()));
+            for (start, entries) in starts.iter_mut().zip(self.chunk(chunk)) {
+                *start += entries.len();
+            }
+        }
+        tasks.into_par_iter().for_each(|(chunk, total, starts)| {
+            let mut lanes = vec![[0.0; LANES]; total.len()];
+            for ((entries, sums), start) in self.chunk(chunk).iter().zip(band_sums).zip(starts) {
+                for (entry, sums) in entries.iter().zip(&sums[start..]) {
+                    let lanes = &mut lanes[entry.rank as usize - chunk * Self::CHUNK];
+                    for (total, sum) in lanes.iter_mut().zip(sums) {
+                        *total += sum;
+                    }
+                }
+            }
+            for (total, lanes) in total.iter_mut().zip(&lanes) {
+                *total = SplatSums::from_lanes(lanes);
+            }
+        });
+        total
+    }
+}

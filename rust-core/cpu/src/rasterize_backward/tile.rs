@@ -1,0 +1,285 @@
+//! The backward pass of one tile.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{f32x16, mask32x16};
+use fearless_simd_macros::simd;
+
+use super::reduce::sum_lanes;
+use super::sums::LANES;
+use crate::bin::BandEntry;
+use crate::project::ProjectedSplat;
+use crate::rasterize::{TileRect, exp2};
+use crate::reference::{ALPHA_MAX, TRANSMITTANCE_MIN};
+
+/// What a band of tiles is computed from: rows of the frame and of the gradient.
+#[derive(Clone, Copy)]
+pub(super) struct BandPixels<'a> {
+    /// Pixels per row.
+    pub width: usize,
+    /// What the forward pass showed: premultiplied r g b, alpha.
+    pub color: &'a [[f32; 4]],
+    /// Expected depth; empty where no gradient by it is given.
+    pub depth: &'a [f32],
+    /// ∂L/∂(r, g, b, alpha).
+    pub by_color: &'a [[f32; 4]],
+    /// ∂L/∂(expected depth); empty where it is zero.
+    pub by_depth: &'a [f32],
+}
+
+/// Rows of a block, as in the forward pass.
+const ROWS: usize = 4;
+
+/// Rows of a strip.
+const STRIP: usize = LANES;
+
+/// A splat as one strip sees it.
+#[derive(Clone, Copy, Default)]
+pub(super) struct StripSplat {
+    splat: ProjectedSplat,
+    /// Distance of each row from the centre.
+    dy: [f32; STRIP],
+    /// u12 dy of each row.
+    shear: [f32; STRIP],
+    /// (u22 dy)² of each row.
+    across: [f32; STRIP],
+    /// Bit r: row r meets the ellipse.
+    rows: u32,
+    /// Where its sums are.
+    position: u32,
+}
+
+/// The pixels of a block.
+struct Block<S: Simd> {
+    /// T, as in the forward pass.
+    transmittance: [f32x16<S>; ROWS],
+    /// Σ w v of the contributors that are still to come.
+    behind: [f32x16<S>; ROWS],
+    /// ∂L/∂ the sums Σ w r, Σ w g, Σ w b, Σ w.
+    by_sums: [[f32x16<S>; ROWS]; 4],
+    /// ∂L/∂ Σ w z.
+    by_weighted_depth: [f32x16<S>; ROWS],
+}
+
+/// Adds what the pixels of a tile say to `sums`, the lanes of every splat of the band. `positions`
+/// are the tile's splats by their place in `entries`.
+#[simd]
+pub(super) fn backward_tile<S: Simd, const DEPTH: bool>(
+    simd: S,
+    splats: &[ProjectedSplat],
+    (entries, positions): (&[BandEntry], &[u32]),
+    tile: TileRect,
+    strip: &mut Vec<StripSplat>,
+    pixels: &BandPixels<'_>,
+    sums: &mut [[f32; LANES]],
+) {
+    let rows = tile.height as usize;
+    let lanes = f32x16::from_fn(simd, |lane| lane as f32 + 0.5);
+    for first_row in (0..rows).step_by(STRIP) {
+        let y = lanes + (tile.y as usize + first_row) as f32;
+        let strip = fill_strip(splats, entries, positions, y, strip);
+        for block_row in (0..STRIP.min(rows - first_row)).step_by(ROWS) {
+            let columns = (tile.x as usize..pixels.width).step_by(LANES);
+            for column in columns.take(tile.width as usize / LANES) {
+                let x = lanes + column as f32;
+                let row = first_row + block_row;
+                let block = load_block::<S, DEPTH>(simd, pixels, (row, rows), column);
+                backward_block::<S, DEPTH>(simd, strip, x, block_row, block, sums);
+            }
+        }
+    }
+}
+
+/// Collects the splats that meet a strip with row centres `y`, with what depends on the row alone.
+#[inline(always)]
+fn fill_strip<'a, S: Simd>(
+    splats: &[ProjectedSplat],
+    entries: &[BandEntry],
+    positions: &[u32],
+    y: f32x16<S>,
+    strip: &'a mut Vec<StripSplat>,
+) -> &'a [StripSplat] {
+    if strip.len() < positions.len() {
+        strip.resize(positions.len(), StripSplat::default());
+    }
+    let mut used = 0;
+    for &position in positions {
+        let entry = &mut strip[used];
+        entry.splat = splats[entries[position as usize].rank as usize];
+        entry.position = position;
+        let dy = y - entry.splat.y;
+        let v2 = dy * entry.splat.u22;
+        let across = v2 * v2;
+        dy.store_array(&mut entry.dy);
+        (dy * entry.splat.u12).store_array(&mut entry.shear);
+        across.store_array(&mut entry.across);
+        entry.rows = across.simd_le(entry.splat.cutoff()).to_bitmask() as u32;
+        used += usize::from(entry.rows != 0);
+    }
+    &strip[..used]
+}
+
+/// Reads a block of the frame and of the gradient; pixels outside have T = 0 and so no part.
+#[inline(always)]
+fn load_block<S: Simd, const DEPTH: bool>(
+    simd: S,
+    pixels: &BandPixels<'_>,
+    (first_row, rows): (usize, usize),
+    column: usize,
+) -> Block<S> {
+    let zero = f32x16::splat(simd, 0.0);
+    let mut block = Block {
+        transmittance: [zero; ROWS],
+        behind: [zero; ROWS],
+        by_sums: [[zero; ROWS]; 4],
+        by_weighted_depth: [zero; ROWS],
+    };
+    for r in 0..ROWS.min(rows - first_row) {
+        let start = (first_row + r) * pixels.width + column;
+        let count = LANES.min(pixels.width - column);
+        let mut planes = [[0.0; LANES]; 6];
+        for i in 0..count {
+            let [red, green, blue, alpha] = pixels.color[start + i];
+            let [by_red, by_green, by_blue, by_alpha] = pixels.by_color[start + i];
+            for (plane, value) in planes.iter_mut().zip([by_red, by_green, by_blue, by_alpha]) {
+                plane[i] = value;
+            }
+            planes[4][i] = by_red * red + by_green * green + by_blue * blue + by_alpha * alpha;
+            planes[5][i] = 1.0;
+            // D = Z / W with Z = Σ w z and W = Σ w: ∂L/∂Z = g / W, ∂L/∂W = −g D / W. Together they
+            // add nothing to Σ w v.
+            if DEPTH && alpha > 0.0 {
+                planes[3][i] -= pixels.by_depth[start + i] * pixels.depth[start + i] / alpha;
+            }
+        }
+        for (plane, values) in block.by_sums.iter_mut().zip(planes) {
+            plane[r] = f32x16::load_array(simd, values);
+        }
+        block.behind[r] = f32x16::load_array(simd, planes[4]);
+        block.transmittance[r] = f32x16::load_array(simd, planes[5]);
+        if DEPTH {
+            let mut by_weighted_depth = [0.0; LANES];
+            for (i, value) in by_weighted_depth.iter_mut().enumerate().take(count) {
+                let alpha = pixels.color[start + i][3];
+                *value = if alpha > 0.0 { pixels.by_depth[start + i] / alpha } else { 0.0 };
+            }
+            block.by_weighted_depth[r] = f32x16::load_array(simd, by_weighted_depth);
+        }
+    }
+    block
+}
+
+/// Splats between two looks at whether a block has been filled up.
+const FULL_CHECK_INTERVAL: usize = 8;
+
+#[inline(always)]
+fn backward_block<S: Simd, const DEPTH: bool>(
+    simd: S,
+    splats: &[StripSplat],
+    x: f32x16<S>,
+    first_row: usize,
+    mut block: Block<S>,
+    sums: &mut [[f32; LANES]],
+) {
+    let zero = f32x16::splat(simd, 0.0);
+    let row_bits = ((1 << ROWS) - 1) << first_row;
+    for splats in splats.chunks(FULL_CHECK_INTERVAL) {
+        for splat in splats {
+            if splat.rows & row_bits != 0 {
+                backward_splat::<S, DEPTH>(simd, splat, x, first_row, &mut block, sums);
+            }
+        }
+        let mut left = block.transmittance[0];
+        for r in 1..ROWS {
+            left = left.max(block.transmittance[r]);
+        }
+        if !left.simd_gt(zero).any_true() {
+            break;
+        }
+    }
+}
+
+/// Blends one splat as the forward pass did, and adds up what its pixels say.
+#[inline(always)]
+fn backward_splat<S: Simd, const DEPTH: bool>(
+    simd: S,
+    strip: &StripSplat,
+    x: f32x16<S>,
+    first_row: usize,
+    block: &mut Block<S>,
+    sums: &mut [[f32; LANES]],
+) {
+    let splat = &strip.splat;
+    let zero = f32x16::splat(simd, 0.0);
+    let rows = |values: &[f32; STRIP]| -> [f32; ROWS] {
+        values[first_row..][..ROWS].try_into().expect("ROWS elements")
+    };
+    let (dy, shear, across) = (rows(&strip.dy), rows(&strip.shear), rows(&strip.across));
+    let along = (x - splat.x) * splat.u11;
+    let mut v1 = [zero; ROWS];
+    let mut power = [zero; ROWS];
+    let mut visible = [mask32x16::splat(simd, false); ROWS];
+    let mut any = mask32x16::splat(simd, false);
+    for r in 0..ROWS {
+        v1[r] = along + shear[r];
+        power[r] = v1[r].mul_add(v1[r], across[r]);
+        visible[r] = power[r].simd_le(splat.cutoff());
+        any |= visible[r];
+    }
+    if !any.any_true() {
+        return;
+    }
+    for r in 0..ROWS {
+        power[r] = splat.log2_opacity - power[r];
+    }
+    let power_of_two = exp2(simd, power);
+    let mut total = [zero; 10];
+    for r in 0..ROWS {
+        let before = block.transmittance[r];
+        let alpha = power_of_two[r].min(ALPHA_MAX as f32);
+        let full = visible[r].select(alpha * before, zero);
+        let after = before - full;
+        let stays_open = after.simd_gt(TRANSMITTANCE_MIN as f32);
+        let weight = stays_open.select(full, zero);
+        block.transmittance[r] = stays_open.select(after, zero);
+
+        let [by_red, by_green, by_blue, by_weight] = &block.by_sums;
+        let mut value = by_red[r].mul_add(splat.color[0], by_weight[r]);
+        value = by_green[r].mul_add(splat.color[1], value);
+        value = by_blue[r].mul_add(splat.color[2], value);
+        if DEPTH {
+            value = block.by_weighted_depth[r].mul_add(splat.depth, value);
+            total[9] = weight.mul_add(block.by_weighted_depth[r], total[9]);
+        }
+        let behind = block.behind[r] - weight * value;
+        block.behind[r] = behind;
+        // α·∂L/∂α = T α v − α·behind / (1 − α) = w·(v − behind / T after), since w = T α and
+        // T after = T (1 − α).
+        let inverse = reciprocal(simd, after);
+        let q = weight * (value - behind * inverse);
+        // Pixels that are not hit have no T after to divide by; at the clamp α is a constant.
+        let counts = visible[r] & stays_open & power_of_two[r].simd_lt(ALPHA_MAX as f32);
+        let q = counts.select(q, zero);
+
+        total[0] = weight.mul_add(by_red[r], total[0]);
+        total[1] = weight.mul_add(by_green[r], total[1]);
+        total[2] = weight.mul_add(by_blue[r], total[2]);
+        total[3] += q;
+        total[4] = q.mul_add(dy[r], total[4]);
+        total[5] = q.mul_add(dy[r] * dy[r], total[5]);
+        let q_v = q * v1[r];
+        total[6] += q_v;
+        total[7] = q_v.mul_add(dy[r], total[7]);
+        total[8] = q_v.mul_add(v1[r], total[8]);
+    }
+    let lanes = &mut sums[strip.position as usize];
+    (f32x16::load_array(simd, *lanes) + sum_lanes(simd, total)).store_array(lanes);
+}
+
+/// 1 / x to about 2⁻²³ on x86 and 2⁻¹⁵ on Arm: the hardware's estimate and a Newton step. A division
+/// takes as long as a third of everything else.
+#[inline(always)]
+fn reciprocal<S: Simd>(simd: S, x: f32x16<S>) -> f32x16<S> {
+    let estimate = x.approximate_recip();
+    let error = f32x16::splat(simd, 1.0) - x * estimate;
+    error.mul_add(estimate, estimate)
+}
