@@ -106,6 +106,9 @@ pub enum BackendError {
         /// The view.
         id: u32,
     },
+    /// A frame that cannot be rendered.
+    #[error("{0}")]
+    Render(String),
     /// A photograph and a camera that do not fit together, or a camera that cannot project.
     #[error("view {id}: {reason}")]
     View {

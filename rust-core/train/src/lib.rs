@@ -23,6 +23,7 @@
 pub mod backend;
 pub mod checkpoint;
 pub mod config;
+mod cpu_backend;
 pub mod densify;
 pub mod evaluation;
 mod exponential;
@@ -35,6 +36,7 @@ pub mod schedule;
 mod state;
 pub mod trainer;
 
+pub use cpu_backend::{CpuBackend, CpuBackendOptions};
 pub use parameters::{ParameterGroup, zeros_like};
 pub use state::TrainingState;
 pub use trainer::{TrainError, Trainer, TrainerOptions};

@@ -332,12 +332,12 @@ mod tests {
     fn a_delta_that_cancels_the_rotation_gives_the_identity_under_both_rules() {
         for rule in [RotationRule::Renormalised, RotationRule::AsTrained] {
             for sum in [[0.0; 4], [1e-8; 4], [f64::NAN; 4]] {
-                assert_eq!(combined_rotation(sum, rule), [1.0, 0.0, 0.0, 0.0]);
+                assert_eq!(combined_rotation(sum, rule).0, [1.0, 0.0, 0.0, 0.0]);
             }
         }
         let sum = [0.0, 0.5, 0.0, 0.0];
-        assert_eq!(combined_rotation(sum, RotationRule::Renormalised), [0.0, 1.0, 0.0, 0.0]);
-        assert_eq!(combined_rotation(sum, RotationRule::AsTrained), sum);
+        assert_eq!(combined_rotation(sum, RotationRule::Renormalised).0, [0.0, 1.0, 0.0, 0.0]);
+        assert_eq!(combined_rotation(sum, RotationRule::AsTrained).0, sum);
     }
 
     #[test]
