@@ -5,6 +5,7 @@
 
 mod compare;
 mod conditioning;
+mod gradients;
 mod image;
 mod levels;
 mod networks;
@@ -13,6 +14,9 @@ mod scenes;
 
 pub use compare::{Comparison, MARGIN, TOLERANCE, compare};
 pub use conditioning::rounding_bound;
+pub use gradients::{
+    GRADIENT_TOLERANCE, assert_finite_gradients, assert_gradients_agree, gradients,
+};
 pub use image::{
     assert_agrees, assert_agrees_within, assert_close_color, assert_finite, assert_same_color,
     everything, largest_difference, render, render_crop,

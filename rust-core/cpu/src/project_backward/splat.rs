@@ -129,17 +129,16 @@ fn color_backward(
     let basis = sh_basis_f32(unit, degree);
     let evaluated = degree.rest_coefficients() * 3;
     let coefficients = &input.sh_rest[..evaluated];
-    // Channels at their limits do not move.
-    let channels = sh_color(&basis, input.sh_dc, coefficients);
-    let by_channel: [f32; 3] = std::array::from_fn(|c| {
-        if channels[c] > 0.0 && channels[c] < MAX_CHANNEL { by_color[c] } else { 0.0 }
-    });
+    // Channels at their limits do not move. One that is free has finite coefficients, the others'
+    // may be anything.
+    let free =
+        sh_color(&basis, input.sh_dc, coefficients).map(|value| value > 0.0 && value < MAX_CHANNEL);
     let mut by_basis = [0.0; 16];
     let rest = sh_rest[..evaluated].chunks_exact_mut(3).zip(coefficients.chunks_exact(3));
     for (k, (out, coefficients)) in (1..).zip(rest) {
-        for c in 0..3 {
-            out[c] = by_channel[c] * basis[k];
-            by_basis[k] += by_channel[c] * coefficients[c];
+        for c in (0..3).filter(|&c| free[c]) {
+            out[c] = by_color[c] * basis[k];
+            by_basis[k] += by_color[c] * coefficients[c];
         }
     }
     let by_unit = basis_backward(unit, degree, &by_basis);
@@ -150,7 +149,7 @@ fn color_backward(
     } else {
         [0.0; 3]
     };
-    (by_channel.map(|g| g * basis[0]), by_offset)
+    (std::array::from_fn(|c| if free[c] { by_color[c] * basis[0] } else { 0.0 }), by_offset)
 }
 
 /// ∂L/∂(w, x, y, z) from ∂L/∂(row-major entries of the rotation matrix).

@@ -92,21 +92,20 @@ fn color_backward(
     degree: ShDegree,
     gradient: DVec3,
 ) -> ([[f64; 3]; 16], DVec3) {
-    // Channels at their limits do not move.
+    // Channels at their limits do not move. One that is free has finite coefficients, the others'
+    // may be anything.
     let channels = channels_before_limits(coefficients, to_splat, degree);
-    let gradient: [f64; 3] = std::array::from_fn(|channel| {
-        let value = channels[channel];
-        let free = value > 0.0 && value < f64::from(MAX_CHANNEL);
-        if free { gradient[channel] } else { 0.0 }
-    });
+    let free: Vec<usize> =
+        (0..3).filter(|&c| channels[c] > 0.0 && channels[c] < f64::from(MAX_CHANNEL)).collect();
     let unit = direction(to_splat);
     let (basis, slopes) = (sh_basis(unit.to_array()), sh_basis_gradient(unit.to_array()));
     let mut by_coefficients = [[0.0; 3]; 16];
     let mut by_direction = DVec3::ZERO;
     for k in 0..degree.coefficients() {
-        by_coefficients[k] = gradient.map(|g| g * basis[k]);
-        let by_basis: f64 = (0..3).map(|c| gradient[c] * coefficients[k][c]).sum();
-        by_direction += by_basis * DVec3::from(slopes[k]);
+        for &c in &free {
+            by_coefficients[k][c] = gradient[c] * basis[k];
+            by_direction += gradient[c] * coefficients[k][c] * DVec3::from(slopes[k]);
+        }
     }
     let length = to_splat.length();
     let through = if length > 0.0 && length.is_finite() {
