@@ -133,39 +133,59 @@ fn load_block<S: Simd, const DEPTH: bool>(
         by_sums: [[zero; ROWS]; 4],
         by_weighted_depth: [zero; ROWS],
     };
+    let count = LANES.min(pixels.width - column);
+    let inside = f32x16::from_fn(simd, |lane| f32::from(u8::from(lane < count)));
     for r in 0..ROWS.min(rows - first_row) {
         let start = (first_row + r) * pixels.width + column;
-        let count = LANES.min(pixels.width - column);
-        let mut planes = [[0.0; LANES]; 6];
-        for i in 0..count {
-            let [red, green, blue, alpha] = pixels.color[start + i];
-            let [by_red, by_green, by_blue, by_alpha] = pixels.by_color[start + i];
-            for (plane, value) in planes.iter_mut().zip([by_red, by_green, by_blue, by_alpha]) {
-                plane[i] = value;
-            }
-            planes[4][i] = by_red * red + by_green * green + by_blue * blue + by_alpha * alpha;
-            planes[5][i] = 1.0;
-            // D = Z / W with Z = Σ w z and W = Σ w: ∂L/∂Z = g / W, ∂L/∂W = −g D / W. Together they
-            // add nothing to Σ w v.
-            if DEPTH && alpha > 0.0 {
-                planes[3][i] -= pixels.by_depth[start + i] * pixels.depth[start + i] / alpha;
-            }
+        let [red, green, blue, alpha] = load_pixels(simd, &pixels.color[start..start + count]);
+        let by = load_pixels(simd, &pixels.by_color[start..start + count]);
+        let behind = by[0].mul_add(red, by[3] * alpha);
+        block.behind[r] = by[2].mul_add(blue, by[1].mul_add(green, behind));
+        block.transmittance[r] = inside;
+        for (plane, by) in block.by_sums.iter_mut().zip(by) {
+            plane[r] = by;
         }
-        for (plane, values) in block.by_sums.iter_mut().zip(planes) {
-            plane[r] = f32x16::load_array(simd, values);
-        }
-        block.behind[r] = f32x16::load_array(simd, planes[4]);
-        block.transmittance[r] = f32x16::load_array(simd, planes[5]);
         if DEPTH {
-            let mut by_weighted_depth = [0.0; LANES];
-            for (i, value) in by_weighted_depth.iter_mut().enumerate().take(count) {
-                let alpha = pixels.color[start + i][3];
-                *value = if alpha > 0.0 { pixels.by_depth[start + i] / alpha } else { 0.0 };
-            }
-            block.by_weighted_depth[r] = f32x16::load_array(simd, by_weighted_depth);
+            // D = Z / W with Z = Σ w z and W = Σ w: ∂L/∂Z = g / W, ∂L/∂W = −g D / W. Together
+            // they add nothing to Σ w v. Where nothing was hit D is not a number.
+            let hit = alpha.simd_gt(zero);
+            let depth = hit.select(load_row(simd, &pixels.depth[start..start + count]), zero);
+            let by_depth = load_row(simd, &pixels.by_depth[start..start + count]);
+            let by_weighted = hit.select(by_depth / alpha, zero);
+            block.by_weighted_depth[r] = by_weighted;
+            block.by_sums[3][r] = block.by_sums[3][r] - by_weighted * depth;
         }
     }
     block
+}
+
+/// Up to sixteen pixels as planes; lanes beyond them are zero.
+#[inline(always)]
+fn load_pixels<S: Simd>(simd: S, pixels: &[[f32; 4]]) -> [f32x16<S>; 4] {
+    let mut padded = [[0.0; 4]; LANES];
+    let pixels: &[[f32; 4]; LANES] = match pixels.try_into() {
+        Ok(whole) => whole,
+        Err(_) => {
+            padded[..pixels.len()].copy_from_slice(pixels);
+            &padded
+        }
+    };
+    let values = pixels.as_flattened();
+    let quarter = |i: usize| f32x16::from_slice(simd, &values[i * LANES..(i + 1) * LANES]);
+    // Two rounds turn pixels into planes: first red and blue from green and alpha.
+    let (red_blue_0, green_alpha_0) = quarter(0).deinterleave(quarter(1));
+    let (red_blue_1, green_alpha_1) = quarter(2).deinterleave(quarter(3));
+    let (red, blue) = red_blue_0.deinterleave(red_blue_1);
+    let (green, alpha) = green_alpha_0.deinterleave(green_alpha_1);
+    [red, green, blue, alpha]
+}
+
+/// Up to sixteen values; lanes beyond them are zero.
+#[inline(always)]
+fn load_row<S: Simd>(simd: S, values: &[f32]) -> f32x16<S> {
+    let mut padded = [0.0; LANES];
+    padded[..values.len()].copy_from_slice(values);
+    f32x16::load_array(simd, padded)
 }
 
 /// Splats between two looks at whether a block has been filled up.
