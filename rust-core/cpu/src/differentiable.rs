@@ -16,10 +16,14 @@
 //! # }
 //! ```
 
+use std::f32::consts::LOG2_E;
+use std::time::{Duration, Instant};
+
+use fearless_simd::{Simd, dispatch};
+use fearless_simd_macros::simd;
 use rayon::prelude::*;
 use trapeze_scene::{Camera, ColorSource, Frame, FrameSettings, Scene, SceneError, Splats};
 
-use crate::RendererOptions;
 use crate::bin::{BandLists, bin_bands};
 use crate::deform::{DeformationOptions, DeformationStage, Deformed};
 use crate::deform_backward::{PoseRule, unit_backward};
@@ -27,8 +31,9 @@ use crate::gradient::{GradientChunk, ImageGradient, PoseGradients, gradient_chun
 use crate::project::{ProjectedSplat, ProjectionStage, project};
 use crate::project_backward::{BackwardView, SplatInput, project_backward};
 use crate::rasterize::{Outputs, Target, rasterize};
-use crate::rasterize_backward::{BackwardTarget, SplatSums, rasterize_backward};
+use crate::rasterize_backward::{BackwardInput, BackwardMemory, SplatSums, rasterize_backward};
 use crate::sort::SortStage;
+use crate::{RendererOptions, StageTimes};
 
 /// Renders frames and keeps what the backward pass needs; one frame after another from the same
 /// working memory.
@@ -45,7 +50,20 @@ pub struct DifferentiableRenderer {
     sorted: Vec<ProjectedSplat>,
     bands: BandLists,
     frame: Frame,
+    memory: BackwardMemory,
     last: Option<LastFrame>,
+    times: PassTimes,
+}
+
+/// Time spent in each stage of the last forward and backward pass.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PassTimes {
+    /// Stages of the forward pass.
+    pub forward: StageTimes,
+    /// Sums over the pixels of each splat.
+    pub rasterize_backward: Duration,
+    /// From these to the stored parameters.
+    pub project_backward: Duration,
 }
 
 /// How the frame that is saved came about.
@@ -72,7 +90,9 @@ impl DifferentiableRenderer {
             sorted: Vec::new(),
             bands: BandLists::default(),
             frame: Frame::default(),
+            memory: BackwardMemory::default(),
             last: None,
+            times: PassTimes::default(),
         }
     }
 
@@ -86,6 +106,12 @@ impl DifferentiableRenderer {
     #[must_use]
     pub fn visible_splats(&self) -> usize {
         self.sorted.len()
+    }
+
+    /// Time spent in each stage of the last passes.
+    #[must_use]
+    pub fn times(&self) -> PassTimes {
+        self.times
     }
 
     /// Renders one frame, the same as [`Renderer::render`](crate::Renderer::render) does, and saves
@@ -104,12 +130,17 @@ impl DifferentiableRenderer {
         camera.validate()?;
         scene.splats.validate()?;
         let relative = camera.relative_to(scene.origin);
+        let mut clock = Clock::start();
         let pose_rule = self.pose(scene, settings);
+        let mut times = StageTimes { deform: clock.lap(), ..StageTimes::default() };
         self.projection.set_splats(&scene.splats);
         project(scene, &self.projection, &self.poses, &relative, settings, &mut self.projected);
+        times.project = clock.lap();
         self.sort.sort(&self.projected, &mut self.sorted);
+        times.sort = clock.lap();
         let size = (camera.width, camera.height);
         self.bands = bin_bands(self.options.level, &self.sorted, size, self.options.tile);
+        times.bin = clock.lap();
         let target = Target {
             width: camera.width,
             height: camera.height,
@@ -118,6 +149,8 @@ impl DifferentiableRenderer {
             level: self.options.level,
         };
         rasterize(&self.sorted, &self.bands, &target, &mut self.frame);
+        times.rasterize = clock.lap();
+        self.times.forward = times;
         let degree = match settings.color_source {
             ColorSource::SphericalHarmonics => {
                 Some(scene.splats.sh_degree.min(settings.max_sh_degree))
@@ -142,7 +175,7 @@ impl DifferentiableRenderer {
     /// [`SceneError::Length`] when the gradient or the scene does not belong to the last frame, or
     /// depth is asked for that it did not have.
     pub fn backward(
-        &self,
+        &mut self,
         scene: &Scene,
         gradient: &ImageGradient<'_>,
         by_splats: &mut Splats,
@@ -156,7 +189,7 @@ impl DifferentiableRenderer {
     /// # Errors
     /// Those of [`backward`](Self::backward).
     pub fn backward_with_poses(
-        &self,
+        &mut self,
         scene: &Scene,
         gradient: &ImageGradient<'_>,
         by_splats: &mut Splats,
@@ -166,66 +199,45 @@ impl DifferentiableRenderer {
     }
 
     fn backward_to(
-        &self,
+        &mut self,
         scene: &Scene,
         gradient: &ImageGradient<'_>,
         by_splats: &mut Splats,
         by_poses: Option<&mut PoseGradients>,
     ) -> Result<(), SceneError> {
-        let last = self.checked(scene, gradient)?;
-        let target = BackwardTarget { tile: self.options.tile, level: self.options.level };
-        let sums = rasterize_backward(&self.sorted, &self.bands, &self.frame, gradient, target);
+        let mut clock = Clock::start();
+        self.check(scene, gradient)?;
+        let Some(last) = &self.last else { return Ok(()) };
+        let rasterized = BackwardInput {
+            splats: &self.sorted,
+            bands: &self.bands,
+            frame: &self.frame,
+            gradient: *gradient,
+            tile: self.options.tile,
+            level: self.options.level,
+        };
+        let sums = rasterize_backward(&rasterized, &mut self.memory);
+        let rasterize_backward = clock.lap();
         let mut rank_of = vec![NOT_DRAWN; last.splats];
         for (rank, splat) in (0u32..).zip(&self.sorted) {
             rank_of[splat.index as usize] = rank;
         }
+        let input = SplatsBackward {
+            splats: &scene.splats,
+            poses: &self.poses,
+            opacities: self.projection.opacities(),
+            sorted: &self.sorted,
+            rank_of: &rank_of,
+            sums: &sums,
+            last,
+        };
         reset_like(by_splats, &scene.splats);
         gradient_chunks(by_splats, by_poses).into_par_iter().for_each(|mut chunk| {
-            for at in 0..chunk.len() {
-                let rank = rank_of[chunk.first + at];
-                if rank != NOT_DRAWN {
-                    self.backward_splat(scene, last, rank as usize, &sums, &mut chunk, at);
-                }
-            }
+            dispatch!(self.options.level, simd => backward_chunk(simd, &input, &mut chunk));
         });
+        self.times.rasterize_backward = rasterize_backward;
+        self.times.project_backward = clock.lap();
         Ok(())
-    }
-
-    /// Carries the sums of one splat back to its parameters, entry `at` of a chunk.
-    fn backward_splat(
-        &self,
-        scene: &Scene,
-        last: &LastFrame,
-        rank: usize,
-        sums: &[SplatSums],
-        chunk: &mut GradientChunk<'_>,
-        at: usize,
-    ) {
-        let splats = &scene.splats;
-        let i = chunk.first + at;
-        let pose = self.poses.pose(i);
-        let input = SplatInput { pose, sh_dc: splats.sh_dc[i], sh_rest: splats.sh_rest_of(i) };
-        let sh_rest = chunk.sh_rest_of(at);
-        let by_pose =
-            project_backward(&last.view, &input, &self.sorted[rank], &sums[rank], sh_rest);
-        if let Some(poses) = &mut chunk.poses {
-            poses.positions[at] = by_pose.position;
-            poses.rotations[at] = by_pose.rotation;
-            poses.scales[at] = by_pose.scale;
-        }
-        let by_sum = last.pose_rule.sum_backward(&pose, by_pose.rotation, by_pose.scale);
-        let canonical = match last.pose_rule {
-            PoseRule::Static => pose,
-            PoseRule::Deformed(_) => Deformed::static_pose(splats, i),
-        };
-        chunk.positions[at] = by_pose.position;
-        chunk.rotations[at] =
-            unit_backward(canonical.rotation, canonical.rotation_length, by_sum.rotation);
-        chunk.log_scales[at] = std::array::from_fn(|c| by_sum.scale[c] * canonical.scale[c]);
-        // d log₂ σ(x) = (1 − σ(x)) / ln 2 dx.
-        let transparency = 1.0 - self.projection.opacities()[i];
-        chunk.opacity_logits[at] = by_pose.log2_opacity * transparency * std::f32::consts::LOG2_E;
-        chunk.sh_dc[at] = by_pose.sh_dc;
     }
 
     /// Stage 1, and how it was done.
@@ -241,11 +253,8 @@ impl DifferentiableRenderer {
         PoseRule::Deformed(network.rotation_rule)
     }
 
-    fn checked(
-        &self,
-        scene: &Scene,
-        gradient: &ImageGradient<'_>,
-    ) -> Result<&LastFrame, SceneError> {
+    /// Whether the last frame was rendered from `scene` and is what `gradient` is of.
+    fn check(&self, scene: &Scene, gradient: &ImageGradient<'_>) -> Result<(), SceneError> {
         let length = |field, expected, found| SceneError::Length { field, expected, found };
         let pixels = self.frame.color.len();
         let last = self.last.as_ref().ok_or(length("rendered frames", 1, 0))?;
@@ -262,6 +271,83 @@ impl DifferentiableRenderer {
                 return Err(length("pixels of the depth gradient", pixels, found));
             }
         }
-        Ok(last)
+        Ok(())
+    }
+}
+
+/// What the way from sums to parameters reads.
+struct SplatsBackward<'a> {
+    splats: &'a Splats,
+    poses: &'a Deformed,
+    opacities: &'a [f32],
+    /// In drawing order, as `sums`.
+    sorted: &'a [ProjectedSplat],
+    /// Place of each splat in that order, or [`NOT_DRAWN`].
+    rank_of: &'a [u32],
+    sums: &'a [SplatSums],
+    last: &'a LastFrame,
+}
+
+/// Carries the sums of consecutive splats back to their parameters. Scalar code, compiled for each
+/// SIMD level.
+#[simd]
+fn backward_chunk<S: Simd>(_: S, input: &SplatsBackward<'_>, chunk: &mut GradientChunk<'_>) {
+    for at in 0..chunk.len() {
+        let rank = input.rank_of[chunk.first + at];
+        if rank != NOT_DRAWN {
+            backward_splat(input, rank as usize, chunk, at);
+        }
+    }
+}
+
+#[inline(always)]
+fn backward_splat(
+    input: &SplatsBackward<'_>,
+    rank: usize,
+    chunk: &mut GradientChunk<'_>,
+    at: usize,
+) {
+    let (splats, last) = (input.splats, input.last);
+    let i = chunk.first + at;
+    let pose = input.poses.pose(i);
+    let parameters = SplatInput { pose, sh_dc: splats.sh_dc[i], sh_rest: splats.sh_rest_of(i) };
+    let by_pose = project_backward(
+        &last.view,
+        &parameters,
+        &input.sorted[rank],
+        &input.sums[rank],
+        chunk.sh_rest_of(at),
+    );
+    if let Some(poses) = &mut chunk.poses {
+        poses.positions[at] = by_pose.position;
+        poses.rotations[at] = by_pose.rotation;
+        poses.scales[at] = by_pose.scale;
+    }
+    let by_sum = last.pose_rule.sum_backward(&pose, by_pose.rotation, by_pose.scale);
+    let canonical = match last.pose_rule {
+        PoseRule::Static => pose,
+        PoseRule::Deformed(_) => Deformed::static_pose(splats, i),
+    };
+    chunk.positions[at] = by_pose.position;
+    chunk.rotations[at] =
+        unit_backward(canonical.rotation, canonical.rotation_length, by_sum.rotation);
+    chunk.log_scales[at] = std::array::from_fn(|c| by_sum.scale[c] * canonical.scale[c]);
+    // d log₂ σ(x) = (1 − σ(x)) / ln 2 dx.
+    let transparency = 1.0 - input.opacities[i];
+    chunk.opacity_logits[at] = by_pose.log2_opacity * transparency * LOG2_E;
+    chunk.sh_dc[at] = by_pose.sh_dc;
+}
+
+/// Time since the last lap.
+struct Clock(Instant);
+
+impl Clock {
+    fn start() -> Self {
+        Self(Instant::now())
+    }
+
+    fn lap(&mut self) -> Duration {
+        let now = Instant::now();
+        now - std::mem::replace(&mut self.0, now)
     }
 }

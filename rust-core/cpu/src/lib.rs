@@ -14,6 +14,6 @@ pub mod reference;
 mod renderer;
 pub mod sort;
 
-pub use differentiable::DifferentiableRenderer;
+pub use differentiable::{DifferentiableRenderer, PassTimes};
 pub use gradient::{ImageGradient, PoseGradients};
 pub use renderer::{Pick, Renderer, RendererOptions, StageTimes};

@@ -36,7 +36,7 @@ pub mod schedule;
 mod state;
 pub mod trainer;
 
-pub use cpu_backend::{CpuBackend, CpuBackendOptions};
+pub use cpu_backend::{CpuBackend, CpuBackendOptions, CpuStepTimes};
 pub use parameters::{ParameterGroup, zeros_like};
 pub use state::TrainingState;
 pub use trainer::{TrainError, Trainer, TrainerOptions};

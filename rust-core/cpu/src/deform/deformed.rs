@@ -43,6 +43,9 @@ pub struct SplatPose {
     pub scale: [f32; 3],
 }
 
+/// Splats that one task activates.
+const CHUNK: usize = 2048;
+
 impl Deformed {
     /// The splats as they are stored, activated: the state in scenes without a network.
     #[must_use]
@@ -54,13 +57,24 @@ impl Deformed {
 
     /// The same into arrays that are there, for splats that change from frame to frame.
     pub(crate) fn set_static(&mut self, splats: &Splats) {
-        let indices = || (0..splats.len()).into_par_iter().with_min_len(4096);
+        let n = splats.len();
         self.positions.clone_from(&splats.positions);
-        let pose = |i: usize| Self::static_pose(splats, i);
-        indices().map(|i| pose(i).scale).collect_into_vec(&mut self.scales);
-        indices()
-            .map(|i| (pose(i).rotation, pose(i).rotation_length))
-            .unzip_into_vecs(&mut self.rotations, &mut self.rotation_lengths);
+        self.rotations.resize(n, [0.0; 4]);
+        self.rotation_lengths.resize(n, 0.0);
+        self.scales.resize(n, [0.0; 3]);
+        let rotations = self.rotations.par_chunks_mut(CHUNK);
+        let lengths = self.rotation_lengths.par_chunks_mut(CHUNK);
+        let scales = self.scales.par_chunks_mut(CHUNK);
+        rotations.zip(lengths).zip(scales).enumerate().for_each(
+            |(chunk, ((rotations, lengths), scales))| {
+                let outputs = rotations.iter_mut().zip(lengths).zip(scales);
+                for (i, ((rotation, length), scale)) in (chunk * CHUNK..).zip(outputs) {
+                    let pose = Self::static_pose(splats, i);
+                    (*rotation, *length, *scale) =
+                        (pose.rotation, pose.rotation_length, pose.scale);
+                }
+            },
+        );
     }
 
     /// The pose of one splat as it is stored, activated.

@@ -26,6 +26,7 @@ pub(crate) struct SumGradient {
 
 impl PoseRule {
     /// The mirror of `apply_outputs`; for a static pose only the ceiling of the scale is left.
+    #[inline(always)]
     pub(crate) fn sum_backward(
         self,
         pose: &SplatPose,
@@ -51,6 +52,7 @@ impl PoseRule {
 
 /// ∂L/∂q from ∂L/∂(q / ‖q‖), given q / ‖q‖ and ‖q‖: what is along q has no effect. Zero
 /// below [`MIN_TRAINED_ROTATION_LENGTH`].
+#[inline(always)]
 pub(crate) fn unit_backward(unit: [f32; 4], length: f32, gradient: [f32; 4]) -> [f32; 4] {
     if length < MIN_TRAINED_ROTATION_LENGTH as f32 {
         return [0.0; 4];

@@ -26,6 +26,7 @@ pub(super) struct EllipseGradient {
 ///
 /// r is a difference that cancels for needles, but only down to the low-pass: its error relative
 /// to √D is ε·|mx| / √0.3.
+#[inline(always)]
 pub(super) fn ellipse_backward(
     splat: &ProjectedSplat,
     mx: [f32; 3],

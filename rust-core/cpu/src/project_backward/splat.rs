@@ -48,6 +48,7 @@ pub(crate) struct VisibleGradient {
 /// they were not evaluated.
 ///
 /// The plain twin of this function is `Projection::project_backward` of the f64 reference.
+#[inline(always)]
 pub(crate) fn project_backward(
     view: &BackwardView,
     input: &SplatInput<'_>,
@@ -68,6 +69,7 @@ pub(crate) fn project_backward(
     gradient
 }
 
+#[inline(always)]
 fn geometry_backward(
     view: &View,
     pose: &SplatPose,
@@ -118,6 +120,7 @@ fn geometry_backward(
 }
 
 /// By the coefficients of band 0 and the vector from the eye; higher bands go to `sh_rest`.
+#[inline(always)]
 fn color_backward(
     degree: ShDegree,
     input: &SplatInput<'_>,
@@ -153,6 +156,7 @@ fn color_backward(
 }
 
 /// ∂L/∂(w, x, y, z) from ∂L/∂(row-major entries of the rotation matrix).
+#[inline(always)]
 fn rotation_matrix_backward([w, x, y, z]: [f32; 4], g: &[[f32; 3]; 3]) -> [f32; 4] {
     let turn = [g[2][1] - g[1][2], g[0][2] - g[2][0], g[1][0] - g[0][1]];
     let shear = [g[2][1] + g[1][2], g[0][2] + g[2][0], g[1][0] + g[0][1]];

@@ -15,5 +15,5 @@ mod stage;
 mod sums;
 mod tile;
 
-pub use stage::{BackwardTarget, rasterize_backward};
+pub use stage::{BackwardInput, BackwardMemory, rasterize_backward};
 pub use sums::SplatSums;

@@ -11,13 +11,28 @@ use crate::gradient::ImageGradient;
 use crate::project::ProjectedSplat;
 use crate::rasterize::TileRect;
 
-/// How a frame was rasterised.
+/// A frame and how it was rasterised, with ∂L/∂frame.
 #[derive(Clone, Copy, Debug)]
-pub struct BackwardTarget {
+pub struct BackwardInput<'a> {
+    /// Splats in drawing order.
+    pub splats: &'a [ProjectedSplat],
+    /// Their bands.
+    pub bands: &'a BandLists,
+    /// What [`rasterize`](crate::rasterize::rasterize()) made of them.
+    pub frame: &'a Frame,
+    /// What the loss says about it.
+    pub gradient: ImageGradient<'a>,
     /// Tile size.
     pub tile: TileSize,
     /// SIMD level.
     pub level: Level,
+}
+
+/// Working memory, reused from frame to frame.
+#[derive(Debug, Default)]
+pub struct BackwardMemory {
+    /// The lanes of the splats of every band.
+    bands: Vec<Vec<[f32; LANES]>>,
 }
 
 /// Working memory of one task.
@@ -28,63 +43,54 @@ struct Scratch {
     strip: Vec<StripSplat>,
 }
 
-/// The sums of every splat of `splats` (in drawing order) for the frame that [`rasterize`] made of
-/// them and ∂L/∂frame.
-///
-/// [`rasterize`]: crate::rasterize::rasterize()
+/// The sums of every splat, in drawing order.
 ///
 /// # Panics
 /// When the gradient has another number of pixels than the frame, or asks for depth that the frame
 /// does not have.
 #[must_use]
 pub fn rasterize_backward(
-    splats: &[ProjectedSplat],
-    bands: &BandLists,
-    frame: &Frame,
-    gradient: &ImageGradient<'_>,
-    target: BackwardTarget,
+    input: &BackwardInput<'_>,
+    memory: &mut BackwardMemory,
 ) -> Vec<SplatSums> {
+    let BackwardInput { frame, gradient, .. } = input;
     assert!(gradient.fits(frame.color.len()), "one gradient per pixel");
     if gradient.expected_depth.is_some() {
         assert_eq!(frame.expected_depth.len(), frame.color.len(), "a frame with depth");
     }
-    let count = frame.height.div_ceil(target.tile.height()) as usize;
-    let band_sums: Vec<Vec<[f32; LANES]>> = (0..count)
-        .into_par_iter()
-        .map_init(Scratch::default, |scratch, band| {
-            band_sums(splats, bands, band, frame, gradient, target, scratch)
-        })
-        .collect();
-    bands.sum_by_rank(&band_sums, splats.len())
+    let count = frame.height.div_ceil(input.tile.height()) as usize;
+    memory.bands.resize_with(count, Vec::new);
+    let bands = memory.bands.par_iter_mut().enumerate();
+    bands.for_each_init(Scratch::default, |scratch, (band, sums)| {
+        sum_band(input, band, scratch, sums);
+    });
+    input.bands.sum_by_rank(&memory.bands, input.splats.len())
 }
 
-fn band_sums(
-    splats: &[ProjectedSplat],
-    bands: &BandLists,
+fn sum_band(
+    input: &BackwardInput<'_>,
     band: usize,
-    frame: &Frame,
-    gradient: &ImageGradient<'_>,
-    target: BackwardTarget,
     Scratch { entries, tiles, strip }: &mut Scratch,
-) -> Vec<[f32; LANES]> {
-    let size = target.tile;
+    sums: &mut Vec<[f32; LANES]>,
+) {
+    let size = input.tile;
     let y = band as u32 * size.height();
-    let height = size.height().min(frame.height - y);
-    let pixels = band_pixels(frame, gradient, (y as usize, height as usize));
+    let height = size.height().min(input.frame.height - y);
+    let pixels = band_pixels(input.frame, &input.gradient, (y as usize, height as usize));
     entries.clear();
-    entries.extend(bands.band(band));
-    tiles.fill_positions(entries, frame.width, size);
-    let mut sums = vec![[0.0; LANES]; entries.len()];
+    entries.extend(input.bands.band(band));
+    tiles.fill_positions(entries, input.frame.width, size);
+    sums.clear();
+    sums.resize(entries.len(), [0.0; LANES]);
     for (positions, x) in tiles.lists().zip((0..).step_by(size.width() as usize)) {
         let tile = TileRect { x, y, width: size.width(), height };
         let list = (&entries[..], positions);
-        dispatch!(target.level, simd => if pixels.by_depth.is_empty() {
-            backward_tile::<_, false>(simd, splats, list, tile, strip, &pixels, &mut sums);
+        dispatch!(input.level, simd => if pixels.by_depth.is_empty() {
+            backward_tile::<_, false>(simd, input.splats, list, tile, strip, &pixels, sums);
         } else {
-            backward_tile::<_, true>(simd, splats, list, tile, strip, &pixels, &mut sums);
+            backward_tile::<_, true>(simd, input.splats, list, tile, strip, &pixels, sums);
         });
     }
-    sums
 }
 
 /// The rows of a band; arrays that are not there give empty slices.

@@ -4,6 +4,7 @@ mod targets;
 
 use std::collections::VecDeque;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use fearless_simd::Level;
 use trapeze_cpu::{DifferentiableRenderer, ImageGradient, RendererOptions};
@@ -35,6 +36,21 @@ impl Default for CpuBackendOptions {
     }
 }
 
+/// Time spent in each part of the steps so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CpuStepTimes {
+    /// Rendering.
+    pub forward: Duration,
+    /// Loss and its gradient.
+    pub loss: Duration,
+    /// Sums over the pixels of each splat.
+    pub rasterize_backward: Duration,
+    /// From these to the stored parameters.
+    pub project_backward: Duration,
+    /// Regularisers, optimiser and noise.
+    pub update: Duration,
+}
+
 /// Trains with all threads of the current rayon pool.
 pub struct CpuBackend {
     options: CpuBackendOptions,
@@ -47,6 +63,7 @@ pub struct CpuBackend {
     by_splats: Splats,
     targets: ResidentTargets,
     reports: VecDeque<StepReport>,
+    times: CpuStepTimes,
 }
 
 impl CpuBackend {
@@ -65,7 +82,14 @@ impl CpuBackend {
             by_splats: Splats::default(),
             targets: ResidentTargets::new(target_budget),
             reports: VecDeque::new(),
+            times: CpuStepTimes::default(),
         }
+    }
+
+    /// Time spent in each part of the steps so far.
+    #[must_use]
+    pub fn step_times(&self) -> CpuStepTimes {
+        self.times
     }
 
     /// Bytes of parameters, moments, gradients and projected splats.
@@ -101,19 +125,26 @@ impl CpuBackend {
             max_sh_degree: plan.sh_degree,
             ..FrameSettings::default()
         };
+        let start = Instant::now();
         let frame = self
             .renderer
             .forward(&self.scene, &view.camera, &settings)
             .map_err(|error| error.to_string())?;
+        self.times.forward += start.elapsed();
+        let start = Instant::now();
         self.by_image.resize(frame.color.len(), [0.0; 4]);
         let loss = self
             .loss
             .evaluate(&frame.color, target, plan.background, plan.ssim_weight, &mut self.by_image)
             .map_err(|error| error.to_string())?;
+        self.times.loss += start.elapsed();
         let gradient = ImageGradient { color: &self.by_image, expected_depth: None };
         self.renderer
             .backward(&self.scene, &gradient, &mut self.by_splats)
             .map_err(|error| error.to_string())?;
+        let passes = self.renderer.times();
+        self.times.rasterize_backward += passes.rasterize_backward;
+        self.times.project_backward += passes.project_backward;
         Ok(loss)
     }
 }
@@ -149,8 +180,10 @@ impl TrainingBackend for CpuBackend {
         self.state.raise_sh_degree(plan.sh_degree);
         let loss = self.differentiate(plan, view, &target)?;
         let visible = self.renderer.visible_splats() as u32;
+        let start = Instant::now();
         let not_finite =
             apply_update(self.options.level, &mut self.state, &mut self.by_splats, plan);
+        self.times.update += start.elapsed();
         self.reports.push_back(StepReport { step: plan.step, loss, not_finite, visible });
         Ok(())
     }
