@@ -45,14 +45,16 @@ fn load_splats(path: &Path) -> Result<Scene, ReadError> {
 }
 
 fn load_folder(folder: &Path) -> Result<Scene, ReadError> {
-    let splats = SPLATS.iter().map(|name| folder.join(name)).find(|path| path.is_file());
+    // What is there under a part's name is that part: a link to nothing or a folder is an error.
+    let present = |name: &str| -> Option<PathBuf> {
+        Some(folder.join(name)).filter(|path| path.symlink_metadata().is_ok())
+    };
+    let splats = SPLATS.iter().find_map(|name| present(name));
     let Some(splats) = splats else {
         let error = ParseError::value("scene folder", "point_cloud.ply or point_cloud.spz", "none");
         return Err(ReadError::new(folder, error));
     };
     let mut scene = load_splats(&splats)?;
-    let present =
-        |name: &str| -> Option<PathBuf> { Some(folder.join(name)).filter(|path| path.exists()) };
     scene.deformation = match (present("weights.bin"), present("deform.pth")) {
         (Some(path), _) => Some(read_weights_bin(&path)?),
         (None, Some(path)) => Some(read_deform_pth(&path)?),

@@ -6,6 +6,7 @@ use trapeze_scene::Scene;
 
 use crate::scene_path::SplatFormat;
 use crate::spz::SpzOptions;
+use crate::weights_bin::expect_standard;
 use crate::{
     WriteError, ply, splat_file, spz, write_cluster_names, write_clusters_bin, write_mask_bin,
     write_mask_json, write_weights_bin,
@@ -47,8 +48,13 @@ fn save_folder(folder: &Path, scene: &Scene) -> Result<(), WriteError> {
         let path = path.to_owned();
         move |source| WriteError::Io { path, source }
     };
-    std::fs::create_dir_all(folder).map_err(io(folder))?;
+    // Everything that can be refused is refused before the first file changes.
+    refuse_invalid(folder, scene)?;
     refuse_checkpoints(folder, scene)?;
+    if let Some(network) = &scene.deformation {
+        expect_standard(&folder.join("weights.bin"), network)?;
+    }
+    std::fs::create_dir_all(folder).map_err(io(folder))?;
     ply::write_ply(&folder.join("point_cloud.ply"), scene)?;
     let mut stale = Vec::new();
     match &scene.deformation {
@@ -79,6 +85,15 @@ fn save_folder(folder: &Path, scene: &Scene) -> Result<(), WriteError> {
         }
     }
     Ok(())
+}
+
+fn refuse_invalid(folder: &Path, scene: &Scene) -> Result<(), WriteError> {
+    scene.validate().map_err(|error| WriteError::Unrepresentable {
+        path: folder.into(),
+        what: "scene".into(),
+        expected: "parts that belong together".into(),
+        found: error.to_string(),
+    })
 }
 
 /// A checkpoint that is already in the folder would be loaded as a part that the scene does not

@@ -69,14 +69,7 @@ pub fn read_weights_bin(path: &Path) -> Result<DeformationNetwork, ReadError> {
 /// # Errors
 /// [`WriteError::Unrepresentable`] for another architecture, [`WriteError::Io`].
 pub fn write_weights_bin(path: &Path, network: &DeformationNetwork) -> Result<(), WriteError> {
-    if !network.is_standard() {
-        return Err(WriteError::Unrepresentable {
-            path: path.into(),
-            what: "deformation network".into(),
-            expected: "8 × 256, 84 inputs (xyz 10 octaves, t 10 octaves)".into(),
-            found: network.describe(),
-        });
-    }
+    expect_standard(path, network)?;
     write_atomically(path, |file| {
         for layer in network.layers() {
             for value in layer.weight.iter().chain(&layer.bias) {
@@ -84,6 +77,19 @@ pub fn write_weights_bin(path: &Path, network: &DeformationNetwork) -> Result<()
             }
         }
         Ok(())
+    })
+}
+
+/// Refuses a network that the format cannot hold.
+pub(crate) fn expect_standard(path: &Path, network: &DeformationNetwork) -> Result<(), WriteError> {
+    if network.is_standard() {
+        return Ok(());
+    }
+    Err(WriteError::Unrepresentable {
+        path: path.into(),
+        what: "deformation network".into(),
+        expected: "8 × 256, 84 inputs (xyz 10 octaves, t 10 octaves)".into(),
+        found: network.describe(),
     })
 }
 
