@@ -153,7 +153,7 @@ fn load_block<S: Simd, const DEPTH: bool>(
             let by_depth = load_row(simd, &pixels.by_depth[start..start + count]);
             let by_weighted = hit.select(by_depth / alpha, zero);
             block.by_weighted_depth[r] = by_weighted;
-            block.by_sums[3][r] = block.by_sums[3][r] - by_weighted * depth;
+            block.by_sums[3][r] -= by_weighted * depth;
         }
     }
     block
