@@ -11,6 +11,9 @@ pub(crate) struct Machine {
     pub(crate) simd: &'static str,
     pub(crate) os: &'static str,
     pub(crate) architecture: &'static str,
+    /// Clock that the threads got, all busy, GHz: on a shared machine far below the nominal one, and
+    /// another from minute to minute.
+    pub(crate) effective_ghz: f64,
 }
 
 impl Machine {
@@ -21,8 +24,28 @@ impl Machine {
             simd: level_name(Level::new()),
             os: std::env::consts::OS,
             architecture: std::env::consts::ARCH,
+            effective_ghz: effective_ghz(),
         }
     }
+}
+
+/// Cycles of a dependent multiplication and addition of integers on every recent core.
+const STEP_CYCLES: f64 = 4.0;
+
+/// Mean clock of all threads, from a chain of operations that nothing can shorten.
+fn effective_ghz() -> f64 {
+    const STEPS: u32 = 5_000_000;
+    let clocks = rayon::broadcast(|_| {
+        let start = std::time::Instant::now();
+        let mut x = std::hint::black_box(1u64);
+        for _ in 0..STEPS {
+            x = x.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        }
+        std::hint::black_box(x);
+        f64::from(STEPS) * STEP_CYCLES / start.elapsed().as_secs_f64() / 1e9
+    });
+    let mean = clocks.iter().sum::<f64>() / clocks.len() as f64;
+    (mean * 100.0).round() / 100.0
 }
 
 /// The processor's own name, where the system tells it.
