@@ -6,6 +6,7 @@ use thiserror::Error;
 use trapeze_formats::{ReadError, WriteError};
 use trapeze_scene::SceneError;
 use trapeze_scene::edit::EditError;
+use trapeze_train::TrainError;
 
 /// Everything that ends a command. Each message is one line that names what was wrong.
 #[derive(Debug, Error)]
@@ -18,6 +19,8 @@ pub(crate) enum CliError {
     Scene(#[from] SceneError),
     #[error(transparent)]
     Edit(#[from] EditError),
+    #[error(transparent)]
+    Train(#[from] TrainError),
     #[error("{argument}: expected {expected}, found {found}")]
     Argument { argument: &'static str, expected: String, found: String },
     #[error("{}: {source}", path.display())]
@@ -28,6 +31,8 @@ pub(crate) enum CliError {
     Output(std::io::Error),
     #[error("cancelled")]
     Cancelled,
+    #[error("interrupted after {step} of {steps} steps; the same command with --resume goes on")]
+    Interrupted { step: u32, steps: u32 },
 }
 
 impl CliError {

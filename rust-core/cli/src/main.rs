@@ -4,6 +4,7 @@
 //! exit code is 0 only on success; an error is one line.
 
 mod commands;
+mod dataset_input;
 mod error;
 mod measure;
 mod output;

@@ -131,6 +131,11 @@ pub trait TrainingBackend {
         256 * u64::from(splats) + 64 * pixels
     }
 
+    /// Bytes of photographs that it keeps at most, for the same estimate.
+    fn target_budget(&self) -> u64 {
+        u64::MAX
+    }
+
     /// Replaces the resident state. Reports of earlier steps are dropped. Photographs stay.
     ///
     /// # Errors

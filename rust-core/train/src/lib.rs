@@ -32,11 +32,13 @@ pub mod loss;
 pub mod optimizer;
 mod parameters;
 pub mod random;
+mod reference_backend;
 pub mod schedule;
 mod state;
 pub mod trainer;
 
 pub use cpu_backend::{CpuBackend, CpuBackendOptions, CpuStepTimes};
 pub use parameters::{ParameterGroup, zeros_like};
+pub use reference_backend::ReferenceBackend;
 pub use state::TrainingState;
 pub use trainer::{TrainError, Trainer, TrainerOptions};

@@ -1,5 +1,7 @@
 //! `trapeze bench`.
 
+mod train;
+
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -25,6 +27,8 @@ pub(crate) enum Bench {
     Deform(DeformArguments),
     /// Reading a splat file.
     Load(LoadArguments),
+    /// Training steps on every instruction set and on the f64 reference, with what they reach.
+    Train(train::Arguments),
 }
 
 #[derive(Debug, Args)]
@@ -103,6 +107,7 @@ impl Bench {
             Self::Render(arguments) => (render(arguments)?, arguments.json),
             Self::Deform(arguments) => (deform(arguments)?, arguments.json),
             Self::Load(arguments) => (load(arguments)?, arguments.json),
+            Self::Train(arguments) => return train::run(arguments),
         };
         if json { print_json(&report) } else { print_text(&report) }
     }

@@ -4,7 +4,8 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser};
-use trapeze_formats::{load_scene, write_atomically};
+use trapeze_formats::{ParseError, ReadError, load_scene, write_atomically};
+use trapeze_train::trainer::TrainingSummary;
 
 use super::Command;
 use crate::error::CliError;
@@ -20,6 +21,12 @@ pub(crate) struct Arguments {
     /// Frames of the turntable.
     #[arg(long, default_value_t = 72)]
     frames: u32,
+    /// The photographs to train on.
+    #[arg(long, default_value = "assets/sample-dataset/transforms_static.json")]
+    photographs: PathBuf,
+    /// Steps of the training run.
+    #[arg(long, default_value_t = 600)]
+    steps: u32,
 }
 
 /// One picture of the demo: file, caption, and the arguments that make it.
@@ -94,11 +101,59 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), CliError> {
     command(&[
         "report", &scene, "--out", &folder, "--size", "640x480", "--fov", "34", "--zoom", "1.6",
     ])?;
+    eprintln!("training on {}", arguments.photographs.display());
+    train(arguments)?;
     let page = page(arguments)?;
     let path = arguments.out.join("index.html");
     write_atomically(&path, |file| std::io::Write::write_all(file, page.as_bytes()))?;
     eprintln!("open {}", path.display());
     Ok(())
+}
+
+/// A short training run; one that was interrupted goes on.
+fn train(arguments: &Arguments) -> Result<(), CliError> {
+    let steps = arguments.steps.to_string();
+    let photographs = arguments.photographs.display().to_string();
+    let out = arguments.out.join("training").display().to_string();
+    command(&[
+        "train",
+        &photographs,
+        "--out",
+        &out,
+        "--resume",
+        "--steps",
+        &steps,
+        "--preview",
+        &steps,
+        "--max-splats",
+        "6000",
+        "--random-splats",
+        "4000",
+        "--sh-degree",
+        "1",
+    ])
+}
+
+/// What the training run says of itself.
+fn training_section(arguments: &Arguments) -> Result<String, CliError> {
+    let folder = arguments.out.join("training");
+    let path = folder.join("training.json");
+    let summary: TrainingSummary = serde_json::from_str(&read(&path)?)
+        .map_err(|error| ReadError::new(&path, ParseError::value("summary", "figures", error)))?;
+    let test = summary.test.map_or("no view held out".into(), |test| {
+        format!("{:.2} dB on {} views that it never saw", test.mean.psnr, test.views.len())
+    });
+    Ok(format!(
+        "<h2>Training</h2>\n<p>{}: {} splats in {} steps, {:.0} s ({:.1} steps a second): {test}.</p>\n\
+         <figure><img src=\"training/previews/step-{:06}.png\" alt=\"A training view, rendered\">\
+         <figcaption>A training view as the trained splats show it</figcaption></figure>\n",
+        escape(&summary.dataset),
+        summary.splats,
+        summary.steps,
+        summary.seconds,
+        summary.steps_per_second,
+        summary.steps,
+    ))
 }
 
 /// Runs one of the program's own commands.
@@ -135,7 +190,9 @@ fn page(arguments: &Arguments) -> Result<String, CliError> {
             escape(picture.caption),
         );
     }
-    html += "</div>\n<h2>Speed against error</h2>\n";
+    html += "</div>\n";
+    html += &training_section(arguments)?;
+    html += "<h2>Speed against error</h2>\n";
     html += &table_to_html(&table);
     html += "<p><img src=\"report.svg\" alt=\"Error over time of every variant\"></p>\n</main>\n";
     Ok(html)

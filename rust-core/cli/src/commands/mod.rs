@@ -3,10 +3,12 @@
 mod bench;
 mod convert;
 mod demo;
+mod eval;
 mod info;
 mod motion;
 mod render;
 mod report;
+mod train;
 
 use clap::Subcommand;
 
@@ -27,6 +29,10 @@ pub(crate) enum Command {
     /// Time one part: render, deform or load.
     #[command(subcommand)]
     Bench(bench::Bench),
+    /// Train a scene from posed photographs.
+    Train(train::Arguments),
+    /// Compare a scene with photographs: PSNR and SSIM.
+    Eval(eval::Arguments),
     /// Run the main job on a scene and write a page that shows it.
     Demo(demo::Arguments),
 }
@@ -40,6 +46,8 @@ impl Command {
             Self::Motion(arguments) => motion::run(arguments),
             Self::Report(arguments) => report::run(arguments),
             Self::Bench(bench) => bench.run(),
+            Self::Train(arguments) => train::run(arguments),
+            Self::Eval(arguments) => eval::run(arguments),
             Self::Demo(arguments) => demo::run(arguments),
         }
     }

@@ -10,6 +10,7 @@ use trapeze_scene::{
     Camera, ClusterSet, ColorSource, Frame, FrameSettings, NO_SPLAT, Scene, Selection, ShDegree,
 };
 
+use crate::dataset_input::parse_color;
 use crate::error::CliError;
 use crate::output::{Rgba8, depth_image, progress_bar, to_rgba8, write_animation, write_png};
 use crate::scene_input::{SceneArguments, ViewArguments};
@@ -326,21 +327,10 @@ fn numbered(path: &Path, i: u32) -> PathBuf {
 }
 
 fn parse_background(text: &str) -> Result<Background, String> {
-    let color = match text {
-        "none" => return Ok(Background(None)),
-        "black" => [0.0; 3],
-        "white" => [1.0; 3],
-        other => {
-            let parts: Vec<f32> = other
-                .split(',')
-                .filter_map(|p| p.trim().parse().ok().filter(|v| (0.0..=1.0).contains(v)))
-                .collect();
-            parts.try_into().map_err(|_| {
-                "expected black, white, none or three numbers in 0-1, as in 0.5,0.5,0.5".to_owned()
-            })?
-        }
-    };
-    Ok(Background(Some(color)))
+    if text == "none" {
+        return Ok(Background(None));
+    }
+    parse_color(text).map(|color| Background(Some(color))).map_err(|error| error + ", or none")
 }
 
 #[cfg(test)]

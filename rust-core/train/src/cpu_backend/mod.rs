@@ -149,7 +149,17 @@ impl CpuBackend {
     }
 }
 
+impl Default for CpuBackend {
+    fn default() -> Self {
+        Self::new(CpuBackendOptions::default())
+    }
+}
+
 impl TrainingBackend for CpuBackend {
+    fn target_budget(&self) -> u64 {
+        self.options.target_budget as u64
+    }
+
     fn load(&mut self, state: &TrainingState, capacity: u32) -> Result<(), BackendError> {
         let (needed, available) = (Self::splat_bytes(state, capacity), self.options.splat_budget);
         if needed > available {

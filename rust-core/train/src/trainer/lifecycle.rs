@@ -14,7 +14,7 @@ use super::views::Views;
 use super::{Event, Figures, Search, TrainError, Trainer, TrainerOptions, TrainingMemory};
 use crate::TrainingState;
 use crate::backend::TrainingBackend;
-use crate::checkpoint::{Checkpoint, Progress};
+use crate::checkpoint::{Checkpoint, CheckpointFolder, Progress};
 use crate::config::TrainingConfig;
 use crate::initialise::scene_extent;
 
@@ -55,28 +55,30 @@ impl<B: TrainingBackend> Trainer<B> {
         run.enter(anchor, start)
     }
 
-    /// Goes on with the run whose checkpoints are in `options.checkpoints`; `None` when there are
-    /// none yet. It ends as if it had never been interrupted.
+    /// Goes on with the run whose checkpoints are in `options.checkpoints`, or starts it when there
+    /// are none yet. It ends as if it had never been interrupted.
     ///
     /// # Errors
     /// [`TrainError::OtherRun`] when the dataset or the settings are not those of the checkpoints;
     /// else as [`start`](Self::start).
     pub fn resume(
         dataset: &Dataset,
-        config: &TrainingConfig,
+        config: TrainingConfig,
         backend: B,
         options: TrainerOptions,
-    ) -> Result<Option<Self>, TrainError> {
-        let Some(folder) = &options.checkpoints else { return Ok(None) };
+    ) -> Result<Self, TrainError> {
+        let newest = options.checkpoints.as_ref().map(CheckpointFolder::load_newest).transpose()?;
+        let (Some(folder), Some(good)) = (&options.checkpoints, newest.flatten()) else {
+            return Self::start(dataset, config, backend, options);
+        };
         folder.remove_litter();
-        let Some(good) = folder.load_newest()? else { return Ok(None) };
-        expect_same_run(&good, config, dataset)?;
+        expect_same_run(&good, &config, dataset)?;
         let paused = folder.load_paused(&good);
-        let views = Views::new(dataset, config)?;
+        let views = Views::new(dataset, &config)?;
         let anchor = Anchor::Folder(folder.clone(), good.state.step);
         let run = Run { dataset, views, backend, options };
         run.check_memory(&good)?;
-        run.enter(anchor, paused.unwrap_or(good)).map(Some)
+        run.enter(anchor, paused.unwrap_or(good))
     }
 
     /// Makes a checkpoint the present state.

@@ -37,12 +37,13 @@ impl TrainingMemory {
         let splats = cap.max(initial);
         let degree = ShDegree::try_from(config.sh_degree).unwrap_or(ShDegree::Three);
         let state = TrainingState::bytes(splats.into(), degree);
-        // Three bytes a pixel, once in the backend; what is decoded ahead is bounded by its budget.
+        // Three bytes a pixel, in the backend; what is decoded ahead comes on top.
         let photographs = 3 * views.pixels();
         Self {
             parameters: state + state / 3,
             copies: if config.search.is_some() { 2 * state } else { state },
-            photographs: photographs + photograph_budget.min(photographs),
+            photographs: photographs.min(backend.target_budget())
+                + photographs.min(photograph_budget),
             working: backend.working_bytes(splats, views.largest()),
         }
     }

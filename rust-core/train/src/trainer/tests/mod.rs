@@ -45,7 +45,7 @@ impl Workplace {
     }
 
     fn resume(&self, config: &TrainingConfig, backend: Mosaic) -> Trainer<Mosaic> {
-        Trainer::resume(&self.dataset, config, backend, self.options()).unwrap().unwrap()
+        Trainer::resume(&self.dataset, config.clone(), backend, self.options()).unwrap()
     }
 }
 

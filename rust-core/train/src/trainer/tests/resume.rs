@@ -90,7 +90,7 @@ fn other_datasets_and_settings_are_refused_by_name() {
     let place = Workplace::new();
     drop(place.start(config(230), Mosaic::default()));
     let refusal = |dataset: &Dataset, config: &TrainingConfig| {
-        let result = Trainer::resume(dataset, config, Mosaic::default(), place.options());
+        let result = Trainer::resume(dataset, config.clone(), Mosaic::default(), place.options());
         result.err().unwrap().to_string()
     };
     let other = TrainingConfig { seed: 9, ..config(230) };
@@ -103,9 +103,9 @@ fn other_datasets_and_settings_are_refused_by_name() {
 }
 
 #[test]
-fn there_is_nothing_to_resume_in_an_empty_folder() {
+fn resuming_where_nothing_is_starts() {
     let place = Workplace::new();
-    let result =
-        Trainer::resume(&place.dataset, &config(10), Mosaic::default(), place.options()).unwrap();
-    assert!(result.is_none());
+    let trainer = place.resume(&config(10), Mosaic::default());
+    assert_eq!(trainer.step(), 0);
+    assert!(place.checkpoints().load_newest().unwrap().is_some());
 }

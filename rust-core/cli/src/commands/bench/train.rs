@@ -1,0 +1,196 @@
+//! `trapeze bench train`: the same run on every instruction set and on the f64 reference.
+
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use fearless_simd::Level;
+use serde::Serialize;
+use trapeze_formats::dataset::Dataset;
+use trapeze_scene::FrameSettings;
+use trapeze_train::backend::TrainingBackend;
+use trapeze_train::config::TrainingConfig;
+use trapeze_train::evaluation::evaluate;
+use trapeze_train::{CpuBackend, CpuBackendOptions, ReferenceBackend, Trainer, TrainerOptions};
+
+use crate::dataset_input::DatasetArguments;
+use crate::error::CliError;
+use crate::measure::{Machine, Timing, level_name, simd_levels};
+use crate::output::{print_json, print_line};
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    dataset: DatasetArguments,
+    /// Steps of the run on each instruction set.
+    #[arg(long, default_value_t = 500, value_parser = clap::value_parser!(u32).range(1..))]
+    steps: u32,
+    /// Steps after which all are compared; the f64 reference takes no more. 0 leaves it out.
+    #[arg(long, default_value_t = 10)]
+    reference_steps: u32,
+    /// SH degree, from the first step.
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=3))]
+    sh_degree: u32,
+    /// Random splats to start from where a dataset has no points.
+    #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..))]
+    random_splats: u32,
+    /// Seed of every random choice.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct Report {
+    what: &'static str,
+    dataset: String,
+    splats: u32,
+    sh_degree: u32,
+    reference_steps: u32,
+    rows: Vec<Row>,
+    machine: Machine,
+}
+
+/// One variant. A speed is never shown without what it reaches.
+#[derive(Debug, Serialize)]
+struct Row {
+    variant: &'static str,
+    /// Time of a step.
+    timing: Timing,
+    /// Steps by the seconds of the whole run, loading of photographs included.
+    steps_per_second: f64,
+    steps: u32,
+    /// On the held-out views after the steps that the reference takes, dB.
+    psnr_at_reference_steps: Option<f64>,
+    /// On the held-out views after all steps, dB.
+    psnr: f64,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), CliError> {
+    let dataset = arguments.dataset.load()?;
+    let mut rows = Vec::new();
+    let mut splats = 0;
+    let mut measure = |row: (Row, u32)| {
+        splats = row.1;
+        rows.push(row.0);
+    };
+    if arguments.reference_steps > 0 {
+        let backend = ReferenceBackend::default();
+        let steps = arguments.reference_steps;
+        measure(measured(arguments, &dataset, backend, "f64 reference", steps)?);
+    }
+    for level in simd_levels().into_iter().rev() {
+        measure(measured(
+            arguments,
+            &dataset,
+            on_level(level),
+            level_name(level),
+            arguments.steps,
+        )?);
+    }
+    let report = Report {
+        what: "train",
+        dataset: arguments.dataset.dataset.display().to_string(),
+        splats,
+        sh_degree: arguments.sh_degree,
+        reference_steps: arguments.reference_steps,
+        rows,
+        machine: Machine::this(),
+    };
+    if arguments.json { print_json(&report) } else { print_text(&report) }
+}
+
+fn on_level(level: Level) -> CpuBackend {
+    CpuBackend::new(CpuBackendOptions { level, ..CpuBackendOptions::default() })
+}
+
+/// A run of `steps` steps, its figures and its number of splats.
+fn measured<B: TrainingBackend>(
+    arguments: &Arguments,
+    dataset: &Dataset,
+    backend: B,
+    variant: &'static str,
+    steps: u32,
+) -> Result<(Row, u32), CliError> {
+    // The schedule of the longest run, so that every variant takes the same first steps.
+    let mut config = TrainingConfig::fixed(arguments.steps.max(steps));
+    config.sh_degree = arguments.sh_degree;
+    config.sh_interval = 0;
+    config.seed = arguments.seed;
+    config.initial.random_count = arguments.random_splats;
+    config.checkpoint_interval = u32::MAX;
+    let options = TrainerOptions { report_interval: u32::MAX, ..TrainerOptions::default() };
+    let mut trainer = Trainer::start(dataset, config, backend, options)?;
+    let mut times = Vec::new();
+    let mut early = None;
+    for step in 1..=steps {
+        let start = Instant::now();
+        trainer.advance(1, &mut |_| ())?;
+        times.push(start.elapsed());
+        if step == arguments.reference_steps && step < steps {
+            early = Some(held_out_psnr(&mut trainer, dataset)?);
+        }
+    }
+    let psnr = held_out_psnr(&mut trainer, dataset)?;
+    let seconds = times.iter().sum::<Duration>().as_secs_f64();
+    let row = Row {
+        variant,
+        timing: Timing::of(&times),
+        steps_per_second: f64::from(steps) / seconds,
+        steps,
+        psnr_at_reference_steps: early.or((steps == arguments.reference_steps).then_some(psnr)),
+        psnr,
+    };
+    Ok((row, trainer.splat_count()))
+}
+
+/// Mean PSNR of the held-out views, dB.
+fn held_out_psnr<B: TrainingBackend>(
+    trainer: &mut Trainer<B>,
+    dataset: &Dataset,
+) -> Result<f64, CliError> {
+    let views: Vec<usize> = dataset.test_views().collect();
+    let evaluation = evaluate(dataset, &views, None, |index| {
+        let settings = FrameSettings {
+            time: dataset.views[index].time.unwrap_or(0.0),
+            ..FrameSettings::default()
+        };
+        let frame = trainer.backend().render(&dataset.local_camera(index), &settings);
+        Ok::<_, CliError>(frame.map_err(trapeze_train::TrainError::from)?)
+    })?;
+    let missing = || CliError::argument("DATASET", "a held-out view", "none");
+    Ok(evaluation.ok_or_else(missing)?.mean.psnr)
+}
+
+fn print_text(report: &Report) -> Result<(), CliError> {
+    print_line(&format!(
+        "`{}`: {} splats, SH degree {}; {} threads of {} ({}).\n",
+        report.dataset,
+        report.splats,
+        report.sh_degree,
+        report.machine.threads,
+        report.machine.cpu,
+        report.machine.simd,
+    ))?;
+    print_line(&format!(
+        "| variant | it/s | median ms | p10–p90 ms | test dB after {} steps | steps | test dB |",
+        report.reference_steps
+    ))?;
+    print_line("|---|---:|---:|---:|---:|---:|---:|")?;
+    for row in &report.rows {
+        let timing = &row.timing;
+        let early = row.psnr_at_reference_steps.map_or("–".into(), |psnr| format!("{psnr:.3}"));
+        print_line(&format!(
+            "| {} | {:.2} | {:.1} | {:.1}–{:.1} | {early} | {} | {:.2} |",
+            row.variant,
+            row.steps_per_second,
+            timing.median_ms,
+            timing.p10_ms,
+            timing.p90_ms,
+            row.steps,
+            row.psnr,
+        ))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,176 @@
+//! `trapeze train`.
+
+mod configuration;
+mod display;
+mod interrupt;
+mod metrics;
+mod output;
+mod previews;
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use sysinfo::System;
+use trapeze_formats::dataset::Dataset;
+use trapeze_formats::load_scene;
+use trapeze_train::backend::TrainingBackend;
+use trapeze_train::trainer::{Event, TrainingSummary};
+use trapeze_train::{CpuBackend, Trainer, TrainerOptions};
+
+use super::eval::evaluate_scene;
+use crate::dataset_input::DatasetArguments;
+use crate::error::CliError;
+use configuration::TrainingArguments;
+use display::Display;
+use interrupt::Interrupt;
+use metrics::Metrics;
+use output::{OutputFolder, SceneFormat};
+use previews::Previews;
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    dataset: DatasetArguments,
+    /// Folder for the scene, its training summary, and the checkpoints while it is trained.
+    #[arg(long)]
+    out: PathBuf,
+    #[command(flatten)]
+    training: TrainingArguments,
+    /// What trains.
+    #[arg(long, value_enum, default_value_t)]
+    backend: Backend,
+    /// Go on with the run in the folder; where there is none, begin it. Takes the same arguments as
+    /// the run that it goes on with.
+    #[arg(long)]
+    resume: bool,
+    /// Write a PNG of the first training view into previews/ every N steps.
+    #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u32).range(1..))]
+    preview: Option<u32>,
+    /// File format of the splats.
+    #[arg(long, value_enum, default_value_t)]
+    format: SceneFormat,
+    /// Megabytes that the run may take; by default what the system has available.
+    #[arg(long, value_name = "MB")]
+    memory_limit: Option<u64>,
+    /// Write figures as JSON lines to a file, or without a name to standard output.
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "-")]
+    json: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum Backend {
+    /// The processor's vector instructions.
+    #[default]
+    Cpu,
+}
+
+/// Steps between two looks at whether the user wants to stop.
+const BATCH: u32 = 5;
+/// Steps between two reports, at least: each waits for the backend and renders.
+const LEAST_INTERVAL: u32 = 10;
+/// Reports of a run, about; and the most steps between two.
+const REPORTS: u32 = 100;
+const MEGABYTE: u64 = 1 << 20;
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), CliError> {
+    let folder = OutputFolder::open(&arguments.out, arguments.resume)?;
+    if let Some(summary) = folder.finished_run()? {
+        eprintln!("{}: this run is complete", arguments.out.display());
+        return Metrics::to(arguments.json.as_deref(), 0)?.finish(&summary);
+    }
+    let dataset = arguments.dataset.load()?;
+    let limit = arguments.memory_limit.map_or_else(available_memory, |mb| mb * MEGABYTE);
+    let config = arguments.training.configuration(&dataset, &arguments.dataset, limit)?;
+    let options = TrainerOptions {
+        checkpoints: Some(folder.checkpoints()),
+        memory_limit: Some(limit),
+        report_interval: (config.steps / REPORTS).clamp(LEAST_INTERVAL, REPORTS),
+        ..TrainerOptions::default()
+    };
+    match arguments.backend {
+        // The folder is empty unless `--resume` was given.
+        Backend::Cpu => {
+            let trainer = Trainer::resume(&dataset, config, CpuBackend::default(), options)?;
+            train(arguments, &dataset, &folder, trainer)
+        }
+    }
+}
+
+fn train<B: TrainingBackend>(
+    arguments: &Arguments,
+    dataset: &Dataset,
+    folder: &OutputFolder,
+    mut trainer: Trainer<B>,
+) -> Result<(), CliError> {
+    warn_of_times(dataset);
+    let interrupt = Interrupt::listen();
+    let mut metrics = Metrics::to(arguments.json.as_deref(), trainer.step())?;
+    let mut previews = arguments.preview.map(|every| Previews::new(folder, every, trainer.step()));
+    let display = Display::new(&trainer);
+    let mut failure = None;
+    while !trainer.is_finished() {
+        trainer.advance(BATCH, &mut |event| {
+            display.show(&event);
+            if let Event::Report(report) = &event
+                && let Err(error) = metrics.report(report)
+            {
+                failure.get_or_insert(error);
+            }
+        })?;
+        if let Some(error) = failure.take() {
+            return Err(error);
+        }
+        display.set_step(trainer.step());
+        if let Some(previews) = &mut previews {
+            previews.write_if_due(&mut trainer)?;
+        }
+        if interrupt.is_asked() && !trainer.is_finished() {
+            trainer.save(&mut |event| display.show(&event))?;
+            let (step, steps) = (trainer.step(), trainer.config().steps);
+            return Err(CliError::Interrupted { step, steps });
+        }
+    }
+    display.finish();
+    let scene = folder.save_scene(&trainer.scene()?, arguments.format)?;
+    let mut summary = trainer.summary();
+    drop(trainer);
+    // The file is evaluated, as anyone else would load it, not what was in memory.
+    let views: Vec<usize> = dataset.test_views().collect();
+    summary.test = evaluate_scene(load_scene(&scene)?, dataset, &views, None)?;
+    folder.finish(&summary)?;
+    describe(&summary, &scene);
+    metrics.finish(&summary)
+}
+
+/// A static scene is what is trained.
+fn warn_of_times(dataset: &Dataset) {
+    let mut times = dataset.training_views().filter_map(|index| dataset.views[index].time);
+    let first = times.next();
+    if times.any(|time| Some(time) != first) {
+        tracing::warn!("the photographs have different times: a static scene is trained on all");
+    }
+}
+
+fn describe(summary: &TrainingSummary, scene: &std::path::Path) {
+    let test = summary.test.as_ref().map_or("no view held out".into(), |test| {
+        let (mean, views) = (&test.mean, test.views.len());
+        format!("{:.2} dB, SSIM {:.4} on {views} held-out views", mean.psnr, mean.ssim)
+    });
+    eprintln!(
+        "{}: {} splats, SH degree {}, {} steps in {:.1} s ({:.1} it/s), {test}",
+        scene.display(),
+        summary.splats,
+        summary.sh_degree,
+        summary.steps,
+        summary.seconds,
+        summary.steps_per_second,
+    );
+}
+
+/// Bytes that may be taken without pushing others out, the limit of a container respected.
+fn available_memory() -> u64 {
+    let mut system = System::new();
+    system.refresh_memory();
+    let container = system.cgroup_limits().map_or(u64::MAX, |limits| limits.free_memory);
+    system.available_memory().min(container)
+}
