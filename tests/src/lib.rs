@@ -5,6 +5,7 @@
 
 mod compare;
 mod conditioning;
+mod gpu;
 mod gradients;
 mod image;
 mod levels;
@@ -14,6 +15,7 @@ mod scenes;
 
 pub use compare::{Comparison, MARGIN, TOLERANCE, compare};
 pub use conditioning::rounding_bound;
+pub use gpu::{gpu, render_gpu};
 pub use gradients::{
     GRADIENT_TOLERANCE, assert_finite_gradients, assert_gradients_agree, gradients,
 };

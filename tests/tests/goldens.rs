@@ -7,9 +7,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use trapeze_cpu::{Renderer, reference};
+use trapeze_gpu::DeviceProfile;
 use trapeze_formats::{View, load_scene, read_npy, read_views};
 use trapeze_scene::{FrameSettings, Scene, psnr};
-use trapeze_tests::{TOLERANCE, assert_finite, compare};
+use trapeze_tests::{TOLERANCE, assert_finite, compare, gpu};
 
 /// Least PSNR of the reference against the goldens, dB. The goldens are f32 renders stored as half
 /// floats, whose steps between ½ and 1 are 2⁻¹¹: that rounding alone is −20 log₁₀(2⁻¹¹/√12) = 77 dB
@@ -42,10 +43,17 @@ fn read_golden(folder: &Path, view: &View) -> Vec<[f32; 4]> {
     values.as_chunks().0.to_vec()
 }
 
-/// Renders the views of a folder of goldens with the CPU renderer and the reference.
+/// Least PSNR of the GPU renderer, against the goldens and against the reference. Its exponentials
+/// and square roots are those of the device.
+const GPU_PSNR: f64 = 70.0;
+
+/// Renders the views of a folder of goldens with the CPU renderer, the GPU renderer and the
+/// reference.
 fn assert_goldens(scene: Scene, folder: &Path, wanted: impl Fn(&View) -> bool) {
     let scene = Arc::new(scene);
     let mut renderer = Renderer::new(scene.clone());
+    let mut gpu_renderer = gpu(DeviceProfile::Full)
+        .map(|gpu| trapeze_gpu::Renderer::new(&gpu, scene.clone()).unwrap());
     let views: Vec<View> = read_views(&folder.join("views.json")).unwrap();
     for view in views.iter().filter(|view| wanted(view)) {
         let golden = read_golden(folder, view);
@@ -62,6 +70,17 @@ fn assert_goldens(scene: Scene, folder: &Path, wanted: impl Fn(&View) -> bool) {
         assert!(reference_psnr >= REFERENCE_PSNR, "{name}: reference {reference_psnr} dB");
         assert!(cpu_psnr >= CPU_PSNR, "{name}: CPU {cpu_psnr} dB");
         assert!(comparison.agrees(TOLERANCE), "{name}: {comparison:?}");
+
+        let Some(gpu_renderer) = &mut gpu_renderer else { continue };
+        let frame = gpu_renderer.render(&view.camera, &settings).unwrap();
+        assert_finite(&frame);
+        let golden_psnr = psnr(&frame.color, &golden);
+        let reference_psnr = psnr(&frame.color, &exact.to_frame().color);
+        let comparison = compare(&frame, &exact, TOLERANCE);
+        println!("{name}: GPU {golden_psnr:.2} dB, {reference_psnr:.2} dB against f64, {comparison:?}");
+        assert!(golden_psnr >= GPU_PSNR, "{name}: GPU {golden_psnr} dB");
+        assert!(reference_psnr >= GPU_PSNR, "{name}: GPU {reference_psnr} dB against f64");
+        assert!(comparison.agrees(TOLERANCE), "{name}: GPU {comparison:?}");
     }
 }
 

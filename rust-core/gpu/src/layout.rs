@@ -1,0 +1,248 @@
+//! The structs that kernels and host share. A test compares sizes and offsets with the WGSL.
+
+use bytemuck::{Pod, Zeroable};
+
+/// `Frame` of common/frame.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct Frame {
+    pub rotation_x: [f32; 4],
+    pub rotation_y: [f32; 4],
+    pub rotation_z: [f32; 4],
+    pub centre_high: [f32; 4],
+    pub centre_low: [f32; 4],
+    pub rotation_z_low: [f32; 4],
+    pub focal: [f32; 2],
+    pub principal: [f32; 2],
+    pub slope_min: [f32; 2],
+    pub slope_max: [f32; 2],
+    pub image: [f32; 2],
+    pub sh_degree: u32,
+    pub color_source: u32,
+    pub heat_scale: f32,
+    pub zero: u32,
+    pub padding_1: u32,
+    pub padding_2: u32,
+}
+
+/// `Pose` of common/frame.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct Pose {
+    pub position: [f32; 3],
+    pub log2_opacity: f32,
+    pub rotation: [f32; 4],
+    pub scale: [f32; 3],
+    pub label: u32,
+}
+
+/// `Window` of project.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct Window {
+    pub first: u32,
+    pub count: u32,
+    pub padding_1: u32,
+    pub padding_2: u32,
+}
+
+/// `Cluster` of project.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct Cluster {
+    pub color: [f32; 3],
+    pub shown: u32,
+}
+
+/// `SortPass` of sort.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct SortPass {
+    pub shift: u32,
+    pub count: u32,
+    pub keys_per_thread: u32,
+    pub max_blocks: u32,
+}
+
+/// `Region` of common/region.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct Region {
+    pub first_tile: [u32; 2],
+    pub tiles: [u32; 2],
+    pub image: [u32; 2],
+    pub output_origin: [u32; 2],
+    pub output_stride: u32,
+    pub capacity: u32,
+    pub sort_keys_per_thread: u32,
+    pub padding: u32,
+}
+
+/// `Sizes` of arguments.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct Sizes {
+    pub depth_block: u32,
+    pub network_splats: u32,
+    pub padding_1: u32,
+    pub padding_2: u32,
+}
+
+/// `Deformation` of common/deformation.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct Deformation {
+    pub origin: [f32; 4],
+    pub origin_turns: [[f32; 4]; 24],
+    pub splats: u32,
+    pub masked: u32,
+    pub threshold: f32,
+    pub octaves: u32,
+    pub depth: u32,
+    pub skip_layer: u32,
+    pub input_rows: u32,
+    pub screw: u32,
+    pub as_trained: u32,
+    pub zero: u32,
+    pub padding_1: u32,
+    pub padding_2: u32,
+}
+
+/// Indices of common/counters.wgsl.
+pub(crate) mod counter {
+    pub(crate) const VISIBLE: usize = 0;
+    pub(crate) const ENTRIES: usize = 1;
+    pub(crate) const SORTED_ENTRIES: usize = 2;
+    pub(crate) const DYNAMIC: usize = 3;
+    pub(crate) const MOST_ENTRIES: usize = 4;
+    /// Words of the buffer.
+    pub(crate) const COUNT: usize = 8;
+}
+
+/// Slots of arguments.wgsl.
+pub(crate) mod argument {
+    pub(crate) const DEPTH_SORT: u64 = 0;
+    pub(crate) const BIN: u64 = 1;
+    pub(crate) const EMIT: u64 = 2;
+    pub(crate) const ENTRY_SORT: u64 = 3;
+    pub(crate) const RANGES: u64 = 4;
+    pub(crate) const RASTERIZE: u64 = 5;
+    pub(crate) const NETWORK: u64 = 6;
+    /// Bytes from one slot to the next.
+    pub(crate) const STRIDE: u64 = 16;
+    /// Bytes of the buffer.
+    pub(crate) const BYTES: u64 = 8 * STRIDE;
+}
+
+#[cfg(test)]
+mod tests {
+    use std::mem::offset_of;
+
+    use crate::shaders::{self, Shader};
+
+    /// Size of a struct, and the offset of each of its members, in the module.
+    fn wgsl_layout(shader: Shader, name: &str) -> (usize, Vec<(String, usize)>) {
+        let module = naga::front::wgsl::parse_str(&shader.source()).unwrap();
+        let (_, ty) = module
+            .types
+            .iter()
+            .find(|(_, ty)| ty.name.as_deref() == Some(name))
+            .unwrap_or_else(|| panic!("{} has no struct {name}", shader.name));
+        let naga::TypeInner::Struct { members, span } = &ty.inner else {
+            panic!("{name} is no struct")
+        };
+        let offsets = members
+            .iter()
+            .map(|m| (m.name.clone().unwrap_or_default(), m.offset as usize))
+            .collect();
+        (*span as usize, offsets)
+    }
+
+    macro_rules! assert_same_layout {
+        ($shader:expr, $name:ident, $($field:ident),+ $(,)?) => {
+            let (size, offsets) = wgsl_layout($shader, stringify!($name));
+            assert_eq!(size, size_of::<super::$name>(), stringify!($name));
+            let ours = vec![$((stringify!($field).to_owned(), offset_of!(super::$name, $field))),+];
+            assert_eq!(offsets, ours, stringify!($name));
+        };
+    }
+
+    #[test]
+    fn structs_are_laid_out_as_the_kernels_read_them() {
+        assert_same_layout!(
+            shaders::PROJECT, Frame, rotation_x, rotation_y, rotation_z, centre_high, centre_low,
+            rotation_z_low, focal, principal, slope_min, slope_max, image, sh_degree,
+            color_source, heat_scale, zero, padding_1, padding_2,
+        );
+        assert_same_layout!(
+            shaders::PROJECT, Pose, position, log2_opacity, rotation, scale, label,
+        );
+        assert_same_layout!(shaders::PROJECT, Window, first, count, padding_1, padding_2);
+        assert_same_layout!(shaders::PROJECT, Cluster, color, shown);
+        assert_same_layout!(
+            shaders::SORT, SortPass, shift, count, keys_per_thread, max_blocks,
+        );
+        assert_same_layout!(
+            shaders::BIN, Region, first_tile, tiles, image, output_origin, output_stride,
+            capacity, sort_keys_per_thread, padding,
+        );
+        assert_same_layout!(
+            shaders::ARGUMENTS, Sizes, depth_block, network_splats, padding_1, padding_2,
+        );
+        assert_same_layout!(
+            shaders::DEFORM, Deformation, origin, origin_turns, splats, masked, threshold,
+            octaves, depth, skip_layer, input_rows, screw, as_trained, zero, padding_1, padding_2,
+        );
+    }
+
+    #[test]
+    fn counters_and_argument_slots_have_one_numbering() {
+        let constants = |shader: Shader| -> std::collections::HashMap<String, u32> {
+            let module = naga::front::wgsl::parse_str(&shader.source()).unwrap();
+            module
+                .constants
+                .iter()
+                .filter_map(|(_, c)| {
+                    let naga::Expression::Literal(naga::Literal::U32(value)) =
+                        module.global_expressions[c.init]
+                    else {
+                        return None;
+                    };
+                    Some((c.name.clone()?, value))
+                })
+                .collect()
+        };
+        let found = constants(shaders::ARGUMENTS);
+        use super::{argument, counter};
+        for (name, value) in [
+            ("VISIBLE", counter::VISIBLE as u64),
+            ("ENTRIES", counter::ENTRIES as u64),
+            ("SORTED_ENTRIES", counter::SORTED_ENTRIES as u64),
+            ("DYNAMIC", counter::DYNAMIC as u64),
+            ("MOST_ENTRIES", counter::MOST_ENTRIES as u64),
+            ("DEPTH_SORT", argument::DEPTH_SORT),
+            ("BIN", argument::BIN),
+            ("EMIT", argument::EMIT),
+            ("ENTRY_SORT", argument::ENTRY_SORT),
+            ("RANGES", argument::RANGES),
+            ("RASTERIZE", argument::RASTERIZE),
+            ("NETWORK", argument::NETWORK),
+        ] {
+            assert_eq!(u64::from(found[name]), value, "{name}");
+        }
+    }
+
+    #[test]
+    fn every_shader_is_valid() {
+        for shader in shaders::ALL {
+            let module = naga::front::wgsl::parse_str(&shader.source())
+                .unwrap_or_else(|e| panic!("{}: {}", shader.name, e.emit_to_string(&shader.source())));
+            naga::valid::Validator::new(
+                naga::valid::ValidationFlags::all(),
+                naga::valid::Capabilities::all(),
+            )
+            .validate(&module)
+            .unwrap_or_else(|e| panic!("{}: {}", shader.name, e.emit_to_string(&shader.source())));
+        }
+    }
+}

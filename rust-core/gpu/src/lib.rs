@@ -1,0 +1,25 @@
+//! The renderer on the GPU: the stages of a frame as WGSL kernels (in `shaders/`), hosted by wgpu,
+//! on Metal and Vulkan from one set of sources.
+
+mod activate;
+mod context;
+mod deform;
+mod error;
+mod kernel;
+mod layout;
+mod project;
+mod readback;
+mod region;
+mod renderer;
+mod scene_buffers;
+pub mod shaders;
+mod sort;
+mod stage_pass;
+mod tiles;
+mod timing;
+
+pub use activate::HarmonicsStorage;
+pub use context::{Created, DeviceProfile, Gpu, GpuOptions};
+pub use error::GpuError;
+pub use renderer::{Pick, Renderer, RendererOptions};
+pub use timing::StageTimes;

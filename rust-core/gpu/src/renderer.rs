@@ -1,0 +1,446 @@
+//! The stages put together.
+
+use std::sync::Arc;
+
+use trapeze_scene::{Camera, Frame, FrameSettings, NO_SPLAT, Scene, ShDegree};
+
+use crate::activate::HarmonicsStorage;
+use crate::deform::{DeformStage, NETWORK_ARGUMENTS};
+use crate::layout::{argument, counter};
+use crate::project::{ProjectStage, ProjectedBuffers, frame_uniform};
+use crate::readback::{self, CountReader, Counts};
+use crate::region::TILE;
+use crate::scene_buffers::SceneBuffers;
+use crate::sort::{PairBuffers, SortKernels, SortPlan};
+use crate::stage_pass::{Groups, Stage, begin};
+use crate::tiles::{
+    DrawingOrder, EntryBuffers, Target, TargetRequest, TileKernels, max_capacity, tile_count,
+};
+use crate::timing::{StageTimes, Timer};
+use crate::{Gpu, GpuError};
+
+/// How a scene is kept on the GPU.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RendererOptions {
+    /// Storage of SH coefficients.
+    pub harmonics: HarmonicsStorage,
+    /// Highest SH band to keep.
+    pub max_sh_degree: ShDegree,
+    /// Tile entries to make room for at first; the buffers grow when a frame needs more.
+    pub initial_entries: Option<u32>,
+}
+
+impl Default for RendererOptions {
+    fn default() -> Self {
+        Self {
+            harmonics: HarmonicsStorage::default(),
+            max_sh_degree: ShDegree::Three,
+            initial_entries: None,
+        }
+    }
+}
+
+/// What a pixel shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pick {
+    /// Index of the top contributor.
+    pub splat: u32,
+    /// Label of its cluster, when the scene has clusters.
+    pub cluster: Option<u32>,
+    /// Median depth where transmittance falls to ½, else expected depth; world units.
+    pub depth: f32,
+}
+
+/// Renders a scene on the GPU.
+///
+/// [`render`](Self::render) waits for the image and returns it. [`draw`](Self::draw) is for
+/// playback: it submits a frame and returns; in the steady state it creates nothing and waits for
+/// nothing. What it drew stays on the GPU, for a [`SurfaceTarget`](crate::SurfaceTarget) to show.
+#[derive(Debug)]
+pub struct Renderer {
+    gpu: Gpu,
+    scene: Arc<Scene>,
+    buffers: SceneBuffers,
+    frame_uniform: wgpu::Buffer,
+    deform: Option<DeformStage>,
+    project: ProjectStage,
+    projected: ProjectedBuffers,
+    sort_kernels: SortKernels,
+    depth_sort: SortPlan,
+    depth_blocks: u32,
+    tile_kernels: TileKernels,
+    order: DrawingOrder,
+    entries: EntryBuffers,
+    main: Target,
+    pixel: Target,
+    /// Regions that the last frame needed.
+    pieces: u32,
+    counts: CountReader,
+    timer: Option<Timer>,
+    last_counts: Counts,
+}
+
+impl Renderer {
+    /// Uploads a scene, with the default options.
+    ///
+    /// # Errors
+    /// [`GpuError`] when the scene does not fit together, or not into the device.
+    pub fn new(gpu: &Gpu, scene: Arc<Scene>) -> Result<Self, GpuError> {
+        Self::with_options(gpu, scene, RendererOptions::default())
+    }
+
+    /// Uploads a scene.
+    ///
+    /// # Errors
+    /// [`GpuError`] when the scene does not fit together, or not into the device.
+    pub fn with_options(
+        gpu: &Gpu,
+        scene: Arc<Scene>,
+        options: RendererOptions,
+    ) -> Result<Self, GpuError> {
+        let buffers =
+            SceneBuffers::upload(gpu, &scene, options.max_sh_degree, options.harmonics)?;
+        let splats = buffers.count;
+        let counts = gpu.storage("counts", 4 * counter::COUNT as u64)?;
+        let deform = match &scene.deformation {
+            Some(network) => Some(DeformStage::new(gpu, &scene, network, &buffers, &counts)?),
+            None => None,
+        };
+        let frame_uniform = gpu.uniform_of("frame", &[0; size_of::<crate::layout::Frame>()]);
+        let projected = ProjectedBuffers::new(gpu, splats)?;
+        let sort_kernels = SortKernels::new(gpu);
+        let pairs = PairBuffers::new(gpu, ["depth keys", "splats"], splats)?;
+        let depth_sort = SortPlan::new(
+            gpu,
+            &sort_kernels,
+            &pairs,
+            &counts,
+            counter::VISIBLE,
+            &DEPTH_SHIFTS,
+            true,
+        )?;
+        let poses = deform.as_ref().map_or(&buffers.canonical_poses, |stage| &stage.poses);
+        let project = ProjectStage::new(
+            gpu,
+            &buffers,
+            &frame_uniform,
+            poses,
+            &projected,
+            &pairs.keys[0],
+            &pairs.values[0],
+        );
+        let network_splats = deform.as_ref().map_or(1, |stage| stage.splats_per_group);
+        let order = DrawingOrder::new(
+            gpu,
+            splats,
+            &depth_sort,
+            // One pass for the low keys and four for the depths: an odd number ends in buffer 1.
+            &pairs.values[(1 + DEPTH_SHIFTS.len()) % 2],
+            network_splats,
+            counts,
+        )?;
+        let capacity = options
+            .initial_entries
+            .unwrap_or(splats.saturating_mul(4).saturating_add(1 << 16))
+            .clamp(1, max_capacity(gpu));
+        Ok(Self {
+            gpu: gpu.clone(),
+            scene,
+            frame_uniform,
+            deform,
+            project,
+            projected,
+            entries: EntryBuffers::new(gpu, &sort_kernels, &order.counts, capacity)?,
+            depth_blocks: splats.div_ceil(depth_sort.block),
+            depth_sort,
+            sort_kernels,
+            tile_kernels: TileKernels::new(gpu),
+            main: Target::new(gpu)?,
+            pixel: Target::new(gpu)?,
+            pieces: 1,
+            counts: CountReader::new(gpu)?,
+            timer: Timer::new(gpu)?,
+            last_counts: Counts::default(),
+            order,
+            buffers,
+        })
+    }
+
+    /// The scene that is rendered.
+    #[must_use]
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.scene
+    }
+
+    /// The device that it is rendered on.
+    #[must_use]
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// Splats that the last frame drew, after culling, as far as the GPU has reported.
+    #[must_use]
+    pub fn visible_splats(&self) -> usize {
+        self.last_counts.visible as usize
+    }
+
+    /// Pairs of a splat and a tile in the last frame (its most crowded region), as far as the GPU
+    /// has reported.
+    #[must_use]
+    pub fn tile_entries(&self) -> u32 {
+        self.last_counts.most_entries
+    }
+
+    /// Renders one frame and waits for it.
+    ///
+    /// # Errors
+    /// [`GpuError`] when the camera cannot project, the frame does not fit into the device, or the
+    /// device is lost.
+    pub fn render(
+        &mut self,
+        camera: &Camera,
+        settings: &FrameSettings,
+    ) -> Result<Frame, GpuError> {
+        camera.validate()?;
+        let layers = settings.depth || settings.top_contributor;
+        self.draw_until_complete(camera, settings, layers, Output::Image)?;
+        let pixels = u64::from(camera.width) * u64::from(camera.height);
+        let mut frame = Frame { width: camera.width, height: camera.height, ..Frame::default() };
+        frame.color = readback::pixels(&self.gpu, &self.main.image, pixels)?;
+        if layers {
+            let values: Vec<[u32; 4]> = readback::pixels(&self.gpu, &self.main.layers, pixels)?;
+            if settings.depth {
+                frame.expected_depth = values.iter().map(|v| f32::from_bits(v[0])).collect();
+                frame.median_depth = values.iter().map(|v| f32::from_bits(v[1])).collect();
+            }
+            if settings.top_contributor {
+                frame.top_contributor = values.iter().map(|v| v[2]).collect();
+            }
+        }
+        Ok(frame)
+    }
+
+    /// What is seen at pixel (x, y), or `None` where nothing is or outside the image. Only that
+    /// pixel's tile is blended; the image of the last frame stays.
+    ///
+    /// # Errors
+    /// Those of [`render`](Self::render).
+    pub fn pick(
+        &mut self,
+        camera: &Camera,
+        settings: &FrameSettings,
+        (x, y): (u32, u32),
+    ) -> Result<Option<Pick>, GpuError> {
+        camera.validate()?;
+        if x >= camera.width || y >= camera.height {
+            return Ok(None);
+        }
+        self.draw_until_complete(camera, settings, true, Output::Tile([x / TILE, y / TILE]))?;
+        let pixels = u64::from(TILE * TILE);
+        let values: Vec<[u32; 4]> = readback::pixels(&self.gpu, &self.pixel.layers, pixels)?;
+        let [expected, median, splat, label] = values[((y % TILE) * TILE + x % TILE) as usize];
+        let (expected, median) = (f32::from_bits(expected), f32::from_bits(median));
+        Ok((splat != NO_SPLAT).then(|| Pick {
+            splat,
+            cluster: self.scene.clusters.as_ref().map(|_| label),
+            depth: if median.is_nan() { expected } else { median },
+        }))
+    }
+
+    /// Draws one frame into the image on the GPU, without waiting for anything.
+    ///
+    /// When a frame needs larger buffers than there are, the GPU leaves the last image as it is;
+    /// the number that is needed arrives with a later call, which makes the buffers grow. `true`
+    /// says that this has happened: the frame before was not drawn and should be drawn again.
+    ///
+    /// # Errors
+    /// [`GpuError`] when the camera cannot project, the frame does not fit into the device, or the
+    /// device is lost.
+    pub fn draw(&mut self, camera: &Camera, settings: &FrameSettings) -> Result<bool, GpuError> {
+        camera.validate()?;
+        if self.gpu.is_lost() {
+            return Err(GpuError::Device("lost".into()));
+        }
+        self.gpu.poll()?;
+        let mut grown = false;
+        if let Some(counts) = self.counts.latest() {
+            self.last_counts = counts;
+            grown = self.make_room(counts, tile_count(self.main.size()))?;
+        }
+        let layers = settings.depth || settings.top_contributor;
+        let mut encoder = self.encode(camera, settings, layers, Output::Image, false)?;
+        self.counts.record(&mut encoder, &self.order.counts);
+        self.gpu.queue().submit([encoder.finish()]);
+        self.counts.map();
+        Ok(grown)
+    }
+
+    /// Draws one frame, waits for it, and returns the time that each stage took on the GPU; `None`
+    /// where the device cannot tell.
+    ///
+    /// # Errors
+    /// Those of [`render`](Self::render).
+    pub fn draw_timed(
+        &mut self,
+        camera: &Camera,
+        settings: &FrameSettings,
+    ) -> Result<Option<StageTimes>, GpuError> {
+        camera.validate()?;
+        let layers = settings.depth || settings.top_contributor;
+        self.draw_until_complete(camera, settings, layers, Output::Image)?;
+        match &self.timer {
+            Some(timer) if self.main.regions().len() == 1 => timer.read(&self.gpu),
+            _ => Ok(None),
+        }
+    }
+
+    /// Makes the next frame evaluate the network again, whatever was drawn last: for benchmarks.
+    pub fn forget_deformation(&mut self) {
+        if let Some(stage) = &mut self.deform {
+            stage.invalidate();
+        }
+    }
+
+    /// Draws until the frame has fitted into the buffers.
+    fn draw_until_complete(
+        &mut self,
+        camera: &Camera,
+        settings: &FrameSettings,
+        layers: bool,
+        output: Output,
+    ) -> Result<(), GpuError> {
+        loop {
+            let encoder = self.encode(camera, settings, layers, output, true)?;
+            self.gpu.queue().submit([encoder.finish()]);
+            let counts = readback::counts(&self.gpu, &self.order.counts)?;
+            self.last_counts = counts;
+            let tiles = match output {
+                Output::Image => tile_count([camera.width, camera.height]),
+                Output::Tile(_) => 1,
+            };
+            if !self.make_room(counts, tiles)? {
+                return Ok(());
+            }
+        }
+    }
+
+    /// Makes room for the entries that a frame needed; `false` when there was enough.
+    fn make_room(&mut self, counts: Counts, tiles: u32) -> Result<bool, GpuError> {
+        let need = counts.most_entries;
+        let capacity = self.entries.pairs.capacity;
+        if need <= capacity {
+            return Ok(false);
+        }
+        let most = max_capacity(&self.gpu);
+        if need > most {
+            // Regions of the image, one after the other.
+            let times = need.div_ceil(most).max(2);
+            if self.pieces >= tiles {
+                return Err(GpuError::OutOfMemory {
+                    what: "splats in one tile",
+                    need: u64::from(need) * 16,
+                    have: u64::from(most) * 16,
+                });
+            }
+            self.pieces = self.pieces.saturating_mul(times).min(tiles);
+        }
+        let wanted = (u64::from(need) * 5 / 4).min(u64::from(most)) as u32;
+        if wanted > capacity {
+            // The old buffers go first: both together might not fit.
+            self.main.unbind();
+            self.pixel.unbind();
+            self.entries =
+                EntryBuffers::new(&self.gpu, &self.sort_kernels, &self.order.counts, wanted)?;
+        }
+        Ok(true)
+    }
+
+    /// Records a frame.
+    fn encode(
+        &mut self,
+        camera: &Camera,
+        settings: &FrameSettings,
+        layers: bool,
+        output: Output,
+        timed: bool,
+    ) -> Result<wgpu::CommandEncoder, GpuError> {
+        let gpu = &self.gpu;
+        let size = [camera.width, camera.height];
+        let request = TargetRequest {
+            size,
+            only_tile: match output {
+                Output::Image => None,
+                Output::Tile(tile) => Some(tile),
+            },
+            layers,
+            pieces: self.pieces,
+        };
+        let target = match output {
+            Output::Image => &mut self.main,
+            Output::Tile(_) => &mut self.pixel,
+        };
+        target.prepare(gpu, request, self.entries.pairs.capacity)?;
+        target.bind(gpu, &self.tile_kernels, &self.order, &self.projected, &self.entries);
+        let target = &*target;
+
+        self.buffers.select(gpu, settings);
+        let camera = camera.relative_to(self.scene.origin);
+        let frame = frame_uniform(&camera, settings, &self.buffers);
+        gpu.queue().write_buffer(&self.frame_uniform, 0, bytemuck::bytes_of(&frame));
+
+        let timestamps = self
+            .timer
+            .as_ref()
+            .filter(|_| timed && target.regions().len() == 1)
+            .map(Timer::queries);
+        let mut encoder = gpu.device().create_command_encoder(&Default::default());
+        encoder.clear_buffer(&self.order.counts, 4 * counter::MOST_ENTRIES as u64, Some(4));
+        if let Some(stage) = &mut self.deform {
+            let work = stage.prepare(gpu, settings.time, settings.static_threshold);
+            stage.clear_list(work, &mut encoder);
+            let mut pass = begin(&mut encoder, Stage::Deform, timestamps);
+            stage.record_mask(work, &mut pass);
+            target.record_network_arguments(&self.tile_kernels, &mut pass);
+            let listed = Groups::Indirect(&self.order.arguments, NETWORK_ARGUMENTS);
+            stage.record_network(work, &mut pass, listed);
+        } else if timestamps.is_some() {
+            drop(begin(&mut encoder, Stage::Deform, timestamps));
+        }
+        self.project.record(&mut begin(&mut encoder, Stage::Project, timestamps));
+        {
+            let mut pass = begin(&mut encoder, Stage::Sort, timestamps);
+            let groups = Groups::Direct(self.depth_blocks);
+            self.depth_sort.record(&self.sort_kernels, &mut pass, 0, groups);
+            target.record_drawing_order(&self.tile_kernels, &mut pass);
+            for step in 1..self.depth_sort.len() {
+                let groups = self.order.groups(argument::DEPTH_SORT);
+                self.depth_sort.record(&self.sort_kernels, &mut pass, step, groups);
+            }
+        }
+        target.record(
+            &self.tile_kernels,
+            &self.sort_kernels,
+            &self.order,
+            &self.entries,
+            layers,
+            &mut encoder,
+            timestamps,
+        );
+        if let Some(timer) = self.timer.as_ref().filter(|_| timestamps.is_some()) {
+            timer.resolve(&mut encoder);
+        }
+        Ok(encoder)
+    }
+}
+
+/// What a frame is drawn into.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Output {
+    /// The whole image.
+    Image,
+    /// One tile, for picking.
+    Tile([u32; 2]),
+}
+
+/// Lowest bits of the digits of a depth.
+const DEPTH_SHIFTS: [u32; 4] = [0, 8, 16, 24];

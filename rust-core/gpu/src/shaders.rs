@@ -1,0 +1,78 @@
+//! The WGSL sources, put together: WGSL has no include, so a stage's source is its common files
+//! followed by its own.
+
+/// A shader: its name, and the files that make it.
+#[derive(Clone, Copy, Debug)]
+pub struct Shader {
+    /// Name of the stage's file, without extension.
+    pub name: &'static str,
+    /// The files' contents, in order.
+    parts: &'static [&'static str],
+}
+
+impl Shader {
+    /// The source of the whole module.
+    #[must_use]
+    pub fn source(&self) -> String {
+        self.parts.join("\n")
+    }
+}
+
+macro_rules! wgsl {
+    ($path:literal) => {
+        include_str!(concat!("../../../shaders/", $path, ".wgsl"))
+    };
+}
+
+const DISPATCH: &str = wgsl!("common/dispatch");
+const COUNTERS: &str = wgsl!("common/counters");
+const SCAN: &str = wgsl!("common/scan");
+const FRAME: &str = wgsl!("common/frame");
+const NUMBERS: &str = wgsl!("common/numbers");
+const REGION: &str = wgsl!("common/region");
+const TRIGONOMETRY: &str = wgsl!("common/trigonometry");
+const DEFORMATION: &str = wgsl!("common/deformation");
+const DEFORM_SPLAT: &str = wgsl!("common/deform_splat");
+
+/// Which splats move.
+pub const MASK: Shader = Shader {
+    name: "mask",
+    parts: &[DISPATCH, COUNTERS, FRAME, NUMBERS, DEFORMATION, wgsl!("mask")],
+};
+/// The deformation network in single precision.
+pub const DEFORM: Shader = Shader {
+    name: "deform",
+    parts: &[
+        DISPATCH,
+        COUNTERS,
+        FRAME,
+        NUMBERS,
+        TRIGONOMETRY,
+        DEFORMATION,
+        DEFORM_SPLAT,
+        wgsl!("deform"),
+    ],
+};
+/// World → image.
+pub const PROJECT: Shader =
+    Shader { name: "project", parts: &[DISPATCH, FRAME, NUMBERS, wgsl!("project")] };
+/// Stable radix sort.
+pub const SORT: Shader =
+    Shader { name: "sort", parts: &[DISPATCH, COUNTERS, SCAN, wgsl!("sort")] };
+/// Sizes of later dispatches.
+pub const ARGUMENTS: Shader = Shader {
+    name: "arguments",
+    parts: &[DISPATCH, COUNTERS, SCAN, REGION, wgsl!("arguments")],
+};
+/// Splats × tiles.
+pub const BIN: Shader =
+    Shader { name: "bin", parts: &[DISPATCH, COUNTERS, SCAN, REGION, wgsl!("bin")] };
+/// Where each tile's entries start.
+pub const RANGES: Shader =
+    Shader { name: "ranges", parts: &[DISPATCH, COUNTERS, REGION, wgsl!("ranges")] };
+/// Blending.
+pub const RASTERIZE: Shader =
+    Shader { name: "rasterize", parts: &[DISPATCH, REGION, wgsl!("rasterize")] };
+
+/// Every shader that any device can run.
+pub const ALL: [Shader; 8] = [MASK, DEFORM, PROJECT, SORT, ARGUMENTS, BIN, RANGES, RASTERIZE];

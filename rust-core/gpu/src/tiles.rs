@@ -1,0 +1,502 @@
+//! Stages 4 and 5 on the host: entries per tile, and blending.
+
+use crate::kernel::{Binding, Interface, part, whole};
+use crate::layout::{Region, Sizes, argument, counter};
+use crate::project::ProjectedBuffers;
+use crate::region::{self, TILE, TileRect, image_tiles};
+use crate::sort::{PairBuffers, SortKernels, SortPlan, keys_per_thread};
+use crate::stage_pass::{Groups, Stage, begin, dispatch};
+use crate::{Gpu, GpuError, shaders};
+
+/// Pipelines of binning and blending.
+#[derive(Debug)]
+pub(crate) struct TileKernels {
+    arguments: Interface,
+    drawing_order: wgpu::ComputePipeline,
+    entries: wgpu::ComputePipeline,
+    pub network: wgpu::ComputePipeline,
+    bin: Interface,
+    count: wgpu::ComputePipeline,
+    emit: wgpu::ComputePipeline,
+    ranges_interface: Interface,
+    ranges: wgpu::ComputePipeline,
+    rasterize_interface: Interface,
+    /// Colour and alpha alone.
+    rasterize: wgpu::ComputePipeline,
+    /// With depths, top contributor and its label.
+    rasterize_layers: wgpu::ComputePipeline,
+}
+
+impl TileKernels {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        use Binding::{Read, Uniform, UniformAt, Write};
+        let arguments = Interface::new(
+            gpu,
+            "arguments",
+            &shaders::ARGUMENTS.source(),
+            &[UniformAt, Uniform, Write, Read, Write, Write],
+        );
+        let bin = Interface::new(
+            gpu,
+            "bin",
+            &shaders::BIN.source(),
+            &[UniformAt, Read, Read, Read, Read, Write, Write, Write],
+        );
+        let ranges = Interface::new(
+            gpu,
+            "ranges",
+            &shaders::RANGES.source(),
+            &[UniformAt, Read, Read, Write],
+        );
+        let rasterize = Interface::new(
+            gpu,
+            "rasterize",
+            &shaders::RASTERIZE.source(),
+            &[UniformAt, Read, Read, Read, Read, Read, Write, Write],
+        );
+        let layers = [("DEPTH", 1.0), ("TOP_CONTRIBUTOR", 1.0)];
+        Self {
+            drawing_order: arguments.pipeline(gpu, "drawing_order", &[]),
+            entries: arguments.pipeline(gpu, "entries", &[]),
+            network: arguments.pipeline(gpu, "network", &[]),
+            arguments,
+            count: bin.pipeline(gpu, "count", &[]),
+            emit: bin.pipeline(gpu, "emit", &[]),
+            bin,
+            ranges: ranges.pipeline(gpu, "ranges", &[]),
+            ranges_interface: ranges,
+            rasterize: rasterize.pipeline(gpu, "rasterize", &[]),
+            rasterize_layers: rasterize.pipeline(gpu, "rasterize", &layers),
+            rasterize_interface: rasterize,
+        }
+    }
+}
+
+/// What the tile stages read of the stages before: per scene.
+#[derive(Debug)]
+pub(crate) struct DrawingOrder {
+    /// Splat indices in drawing order, once the depth sort is done.
+    pub order: wgpu::Buffer,
+    pub digit_counts: wgpu::Buffer,
+    pub counts: wgpu::Buffer,
+    pub arguments: wgpu::Buffer,
+    pub sizes: wgpu::Buffer,
+    group_entries: wgpu::Buffer,
+}
+
+/// Splats that one workgroup of the binning kernel takes.
+const SPLATS_PER_GROUP: u32 = 64;
+
+impl DrawingOrder {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        splats: u32,
+        depth_sort: &SortPlan,
+        order: &wgpu::Buffer,
+        network_splats: u32,
+        counts: wgpu::Buffer,
+    ) -> Result<Self, GpuError> {
+        let usage = wgpu::BufferUsages::STORAGE
+            | wgpu::BufferUsages::INDIRECT
+            | wgpu::BufferUsages::COPY_DST;
+        let sizes = Sizes { depth_block: depth_sort.block, network_splats, ..Sizes::default() };
+        Ok(Self {
+            order: order.clone(),
+            digit_counts: depth_sort.digit_counts.clone(),
+            counts,
+            arguments: gpu.buffer("arguments", argument::BYTES, usage)?,
+            sizes: gpu.uniform_of("sizes", bytemuck::bytes_of(&sizes)),
+            group_entries: gpu
+                .storage("entries of groups", u64::from(splats.div_ceil(SPLATS_PER_GROUP)) * 4)?,
+        })
+    }
+
+    /// Workgroups of an indirect dispatch.
+    pub(crate) fn groups(&self, slot: u64) -> Groups<'_> {
+        Groups::Indirect(&self.arguments, slot * argument::STRIDE)
+    }
+}
+
+/// (tile, splat) pairs and their sort.
+#[derive(Debug)]
+pub(crate) struct EntryBuffers {
+    pub pairs: PairBuffers,
+    /// Sort by the lowest 16 bits of the tile, enough for 65 536 tiles.
+    sort_two: SortPlan,
+    /// Sort by the lowest 24 bits.
+    sort_three: SortPlan,
+}
+
+impl EntryBuffers {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        kernels: &SortKernels,
+        counts: &wgpu::Buffer,
+        capacity: u32,
+    ) -> Result<Self, GpuError> {
+        let pairs = PairBuffers::new(gpu, ["entry tiles", "entry splats"], capacity)?;
+        let plan = |shifts: &[u32]| {
+            SortPlan::new(gpu, kernels, &pairs, counts, counter::SORTED_ENTRIES, shifts, false)
+        };
+        Ok(Self { sort_two: plan(&[0, 8])?, sort_three: plan(&[0, 8, 16])?, pairs })
+    }
+
+    /// The sort for regions of so many tiles.
+    fn sort(&self, tiles: u32) -> &SortPlan {
+        if tiles <= 1 << 16 { &self.sort_two } else { &self.sort_three }
+    }
+}
+
+/// Most entries that the device's limits allow.
+pub(crate) fn max_capacity(gpu: &Gpu) -> u32 {
+    (gpu.max_binding() / 4).min(1 << 30) as u32
+}
+
+/// What is drawn into: an image, and how it is cut into regions.
+#[derive(Debug)]
+pub(crate) struct Target {
+    size: [u32; 2],
+    /// Regions, and the pieces that they were cut for.
+    regions: Vec<TileRect>,
+    pieces: u32,
+    /// Pixels and tiles that the buffers hold.
+    pixels: u64,
+    tiles: u32,
+    /// r g b a.
+    pub image: wgpu::Buffer,
+    /// Depths, top contributor, label; one pixel until they are asked for.
+    pub layers: wgpu::Buffer,
+    layer_pixels: u64,
+    tile_starts: wgpu::Buffer,
+    region_uniforms: wgpu::Buffer,
+    uniform_slots: usize,
+    /// Capacity that the uniforms were written for.
+    capacity: u32,
+    bound: Option<Bound>,
+}
+
+#[derive(Debug)]
+struct Bound {
+    arguments: wgpu::BindGroup,
+    bin: wgpu::BindGroup,
+    /// For sorts of two and of three passes, whose results are in different buffers.
+    ranges: [wgpu::BindGroup; 2],
+    /// Windows of the image, each with bind groups for two and for three passes.
+    windows: Vec<ImageWindow>,
+}
+
+#[derive(Debug)]
+struct ImageWindow {
+    rasterize: [wgpu::BindGroup; 2],
+}
+
+/// Bytes of a pixel in the image and in the layers.
+pub(crate) const PIXEL_BYTES: u64 = 16;
+/// Bytes between two regions' uniform blocks.
+const REGION_STRIDE: usize = 256;
+
+/// What a frame asks of a target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct TargetRequest {
+    pub size: [u32; 2],
+    /// Draw only this tile, as an image of its own.
+    pub only_tile: Option<[u32; 2]>,
+    pub layers: bool,
+    /// Regions to cut the image into, at least.
+    pub pieces: u32,
+}
+
+impl Target {
+    pub(crate) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self {
+            size: [0; 2],
+            regions: Vec::new(),
+            pieces: 0,
+            pixels: 0,
+            tiles: 0,
+            image: gpu.storage("image", 0)?,
+            layers: gpu.storage("layers", 0)?,
+            layer_pixels: 0,
+            tile_starts: gpu.storage("tile starts", 0)?,
+            region_uniforms: gpu.uniform_of("regions", &[0; REGION_STRIDE]),
+            uniform_slots: 1,
+            capacity: 0,
+            bound: None,
+        })
+    }
+
+    /// Size of the image, pixels.
+    pub(crate) fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Regions that the image is cut into.
+    pub(crate) fn regions(&self) -> &[TileRect] {
+        &self.regions
+    }
+
+    /// Forgets the bindings, when buffers outside have been replaced.
+    pub(crate) fn unbind(&mut self) {
+        self.bound = None;
+    }
+
+    /// Makes the target fit a request. Does nothing on the device when it already does.
+    pub(crate) fn prepare(
+        &mut self,
+        gpu: &Gpu,
+        request: TargetRequest,
+        capacity: u32,
+    ) -> Result<(), GpuError> {
+        let [width, height] = request.size;
+        let stored = if request.only_tile.is_some() { [TILE, TILE] } else { request.size };
+        let max_rows = rows_per_window(gpu, stored[0])?;
+        let regions = match request.only_tile {
+            Some(first) => vec![TileRect { first, tiles: [1, 1] }],
+            None => region::cut([width, height], request.pieces, max_rows),
+        };
+        let unchanged = self.size == request.size
+            && self.regions == regions
+            && self.capacity == capacity;
+        let windowed = regions.len() > 1;
+        if windowed && !unchanged {
+            // Windows of the image are bound one by one.
+            self.bound = None;
+        }
+        self.grow(gpu, stored, request.layers, &regions)?;
+        if unchanged {
+            return Ok(());
+        }
+        if (self.regions.len() > 1) != windowed {
+            self.bound = None;
+        }
+        self.size = request.size;
+        self.pieces = request.pieces;
+        self.capacity = capacity;
+        self.regions = regions;
+        self.write_regions(gpu, request);
+        Ok(())
+    }
+
+    fn grow(
+        &mut self,
+        gpu: &Gpu,
+        stored: [u32; 2],
+        layers: bool,
+        regions: &[TileRect],
+    ) -> Result<(), GpuError> {
+        let pixels = u64::from(stored[0]) * u64::from(stored[1]);
+        if pixels > self.pixels {
+            self.image = gpu.storage("image", pixels * PIXEL_BYTES)?;
+            self.pixels = pixels;
+            self.bound = None;
+        }
+        if layers && pixels > self.layer_pixels {
+            self.layers = gpu.storage("layers", pixels * PIXEL_BYTES)?;
+            self.layer_pixels = pixels;
+            self.bound = None;
+        }
+        let tiles = regions.iter().map(|r| r.count()).max().unwrap_or(0);
+        if tiles > self.tiles {
+            self.tile_starts = gpu.storage("tile starts", (u64::from(tiles) + 1) * 4)?;
+            self.tiles = tiles;
+            self.bound = None;
+        }
+        if regions.len() > self.uniform_slots {
+            self.uniform_slots = regions.len().next_power_of_two();
+            self.region_uniforms =
+                gpu.uniform_of("regions", &vec![0; self.uniform_slots * REGION_STRIDE]);
+            self.bound = None;
+        }
+        Ok(())
+    }
+
+    fn write_regions(&self, gpu: &Gpu, request: TargetRequest) {
+        let mut blocks = vec![0; self.regions.len() * REGION_STRIDE];
+        for (block, &rect) in blocks.chunks_exact_mut(REGION_STRIDE).zip(&self.regions) {
+            let (origin, stride) = match request.only_tile {
+                Some([x, y]) => ([x * TILE, y * TILE], TILE),
+                // A window of the image starts with the region's first row.
+                None if self.regions.len() > 1 => ([0, rect.first[1] * TILE], self.size[0]),
+                None => ([0, 0], self.size[0]),
+            };
+            let region = region::uniform(
+                rect,
+                self.size,
+                origin,
+                stride,
+                self.capacity,
+                keys_per_thread(self.capacity),
+            );
+            block[..size_of::<Region>()].copy_from_slice(bytemuck::bytes_of(&region));
+        }
+        gpu.queue().write_buffer(&self.region_uniforms, 0, &blocks);
+    }
+
+    /// Binds the target to the other buffers, unless it is bound already.
+    pub(crate) fn bind(
+        &mut self,
+        gpu: &Gpu,
+        kernels: &TileKernels,
+        order: &DrawingOrder,
+        projected: &ProjectedBuffers,
+        entries: &EntryBuffers,
+    ) {
+        if self.bound.is_some() {
+            return;
+        }
+        let region = || part(&self.region_uniforms, 0, size_of::<Region>() as u64);
+        let pairs = &entries.pairs;
+        let arguments = kernels.arguments.bind(
+            gpu,
+            &[
+                region(),
+                whole(&order.sizes),
+                whole(&order.counts),
+                whole(&order.digit_counts),
+                whole(&order.group_entries),
+                whole(&order.arguments),
+            ],
+        );
+        let bin = kernels.bin.bind(
+            gpu,
+            &[
+                region(),
+                whole(&order.order),
+                whole(&projected.centres),
+                whole(&projected.extents),
+                whole(&order.counts),
+                whole(&order.group_entries),
+                whole(&pairs.keys[0]),
+                whole(&pairs.values[0]),
+            ],
+        );
+        // Two passes end in the first buffers, three in the second.
+        let ranges = std::array::from_fn(|i| {
+            kernels.ranges_interface.bind(
+                gpu,
+                &[region(), whole(&order.counts), whole(&pairs.keys[i]), whole(&self.tile_starts)],
+            )
+        });
+        let windows = (0..self.regions.len())
+            .map(|r| {
+                let rasterize = std::array::from_fn(|i| {
+                    kernels.rasterize_interface.bind(
+                        gpu,
+                        &[
+                            region(),
+                            whole(&self.tile_starts),
+                            whole(&pairs.values[i]),
+                            whole(&projected.centres),
+                            whole(&projected.extents),
+                            whole(&projected.colors),
+                            self.image_window(&self.image, self.pixels, r),
+                            self.image_window(&self.layers, self.layer_pixels, r),
+                        ],
+                    )
+                });
+                ImageWindow { rasterize }
+            })
+            .collect();
+        self.bound = Some(Bound { arguments, bin, ranges, windows });
+    }
+
+    /// The part of an image that a region writes.
+    fn image_window<'a>(
+        &self,
+        buffer: &'a wgpu::Buffer,
+        pixels: u64,
+        region: usize,
+    ) -> wgpu::BufferBinding<'a> {
+        if self.regions.len() <= 1 || pixels == 0 {
+            return whole(buffer);
+        }
+        let rect = self.regions[region];
+        let width = u64::from(self.size[0]);
+        let first = u64::from(rect.first[1] * TILE);
+        let rows = u64::from(rect.tiles[1] * TILE).min(u64::from(self.size[1]) - first);
+        part(buffer, first * width * PIXEL_BYTES, rows * width * PIXEL_BYTES)
+    }
+
+    /// Records what follows the first pass of the depth sort: how many splats are drawn.
+    pub(crate) fn record_drawing_order(
+        &self,
+        kernels: &TileKernels,
+        pass: &mut wgpu::ComputePass<'_>,
+    ) {
+        let Some(bound) = &self.bound else { return };
+        pass.set_pipeline(&kernels.drawing_order);
+        pass.set_bind_group(0, &bound.arguments, &[0]);
+        pass.dispatch_workgroups(1, 1, 1);
+    }
+
+    /// Records the workgroups of the network, from the number of splats that move.
+    pub(crate) fn record_network_arguments(
+        &self,
+        kernels: &TileKernels,
+        pass: &mut wgpu::ComputePass<'_>,
+    ) {
+        let Some(bound) = &self.bound else { return };
+        pass.set_pipeline(&kernels.network);
+        pass.set_bind_group(0, &bound.arguments, &[0]);
+        pass.dispatch_workgroups(1, 1, 1);
+    }
+
+    /// Records binning and blending of all regions.
+    pub(crate) fn record(
+        &self,
+        kernels: &TileKernels,
+        sort_kernels: &SortKernels,
+        order: &DrawingOrder,
+        entries: &EntryBuffers,
+        layers: bool,
+        encoder: &mut wgpu::CommandEncoder,
+        timestamps: Option<&wgpu::QuerySet>,
+    ) {
+        let Some(bound) = &self.bound else { return };
+        for (i, rect) in self.regions.iter().enumerate() {
+            let offset = [(i * REGION_STRIDE) as u32];
+            let sort = entries.sort(rect.count());
+            let sorted = sort.len() % 2;
+            {
+                let mut pass = begin(encoder, Stage::Bin, timestamps);
+                pass.set_pipeline(&kernels.count);
+                pass.set_bind_group(0, &bound.bin, &offset);
+                dispatch(&mut pass, order.groups(argument::BIN));
+                pass.set_pipeline(&kernels.entries);
+                pass.set_bind_group(0, &bound.arguments, &offset);
+                pass.dispatch_workgroups(1, 1, 1);
+                pass.set_pipeline(&kernels.emit);
+                pass.set_bind_group(0, &bound.bin, &offset);
+                dispatch(&mut pass, order.groups(argument::EMIT));
+                for step in 0..sort.len() {
+                    let groups = order.groups(argument::ENTRY_SORT);
+                    sort.record(sort_kernels, &mut pass, step, groups);
+                }
+                pass.set_pipeline(&kernels.ranges);
+                pass.set_bind_group(0, &bound.ranges[sorted], &offset);
+                dispatch(&mut pass, order.groups(argument::RANGES));
+            }
+            let mut pass = begin(encoder, Stage::Rasterize, timestamps);
+            let pipeline = if layers { &kernels.rasterize_layers } else { &kernels.rasterize };
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &bound.windows[i].rasterize[sorted], &offset);
+            dispatch(&mut pass, order.groups(argument::RASTERIZE));
+        }
+    }
+}
+
+/// Rows of tiles of an image whose pixels fit into one binding.
+fn rows_per_window(gpu: &Gpu, width: u32) -> Result<u32, GpuError> {
+    let row = u64::from(width) * u64::from(TILE) * PIXEL_BYTES;
+    let have = gpu.max_binding();
+    if row > have {
+        return Err(GpuError::OutOfMemory { what: "a row of tiles", need: row, have });
+    }
+    Ok((have / row).min(u64::from(u32::MAX)) as u32)
+}
+
+/// Tiles of an image.
+pub(crate) fn tile_count(size: [u32; 2]) -> u32 {
+    let [across, down] = image_tiles(size);
+    across * down
+}

@@ -1,0 +1,13 @@
+// What the stages of a frame tell each other, and the host, in numbers. Indices into an array of
+// u32; `rust-core/gpu/src/counters.rs` has the same list.
+
+/// Splats that the frame draws, after culling.
+const VISIBLE: u32 = 0u;
+/// Pairs of a splat and a tile in the region at hand; 2³² − 1 stands for more than can be counted.
+const ENTRIES: u32 = 1u;
+/// Entries that the tile sort works on: ENTRIES, or 0 when they do not fit.
+const SORTED_ENTRIES: u32 = 2u;
+/// Splats that the network moves in this frame.
+const DYNAMIC: u32 = 3u;
+/// Most ENTRIES of any region since the host last cleared it.
+const MOST_ENTRIES: u32 = 4u;

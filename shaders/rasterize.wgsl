@@ -1,0 +1,151 @@
+// Stage 5: blending, front to back (Porter & Duff 1984; Kerbl et al. 2023).
+//
+// Needs: common/dispatch, common/region.
+//
+// One workgroup per tile, one thread per pixel. The workgroup fetches its splats 256 at a time;
+// each pixel blends them in drawing order until a blend would leave T ≤ 10⁻⁴, and the workgroup
+// ends when all its pixels have.
+
+@group(0) @binding(0) var<uniform> region: Region;
+@group(0) @binding(1) var<storage, read> tile_starts: array<u32>;
+@group(0) @binding(2) var<storage, read> entry_splats: array<u32>;
+@group(0) @binding(3) var<storage, read> centres: array<vec4<f32>>;
+@group(0) @binding(4) var<storage, read> extents: array<vec4<f32>>;
+@group(0) @binding(5) var<storage, read> colors: array<vec4<f32>>;
+/// Premultiplied r g b, and alpha = 1 − T.
+@group(0) @binding(6) var<storage, read_write> image: array<vec4<f32>>;
+/// Bits of expected and median depth, top contributor, its cluster's label. One element when
+/// neither DEPTH nor TOP_CONTRIBUTOR.
+@group(0) @binding(7) var<storage, read_write> layers: array<vec4<u32>>;
+
+override DEPTH: bool = false;
+override TOP_CONTRIBUTOR: bool = false;
+
+const LOG2_255: f32 = 7.994353437;
+const ALPHA_MAX: f32 = 0.99;
+const TRANSMITTANCE_MIN: f32 = 1e-4;
+/// Largest alpha of a pixel: 1 − 10⁻⁴, rounded down. T stays above its minimum by rule; rounding
+/// in the sum of weights must not say otherwise.
+const MAX_IMAGE_ALPHA: f32 = 0.9999;
+const NAN_BITS: u32 = 0x7fc00000u;
+const NO_SPLAT: u32 = 0xffffffffu;
+
+var<workgroup> batch_centres: array<vec4<f32>, 256>;
+var<workgroup> batch_extents: array<vec4<f32>, 256>;
+var<workgroup> batch_colors: array<vec4<f32>, 256>;
+var<workgroup> batch_splats: array<u32, 256>;
+/// Whether any pixel is unfinished, of even and of odd batches.
+var<workgroup> open_pixels: array<atomic<u32>, 2>;
+
+@compute @workgroup_size(256)
+fn rasterize(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) thread: u32,
+) {
+    let tile = flat_group(group, groups);
+    let inside_region = tile < region.tiles.x * region.tiles.y;
+    let column = region.first_tile.x + tile % region.tiles.x;
+    let row = region.first_tile.y + tile / region.tiles.x;
+    let pixel = vec2<u32>(column, row) * TILE + vec2<u32>(thread % TILE, thread / TILE);
+    let inside = inside_region && all(pixel < region.image);
+    let point = vec2<f32>(pixel) + 0.5;
+
+    var first = 0u;
+    var end = 0u;
+    if (inside_region) {
+        first = tile_starts[tile];
+        end = tile_starts[tile + 1u];
+    }
+
+    // T; 0 once a blend would have left too little, after which nothing has weight.
+    var transmittance = select(0.0, 1.0, inside);
+    var color = vec3<f32>(0.0);
+    var weight = 0.0;
+    var weighted_depth = 0.0;
+    var median_depth = NAN_BITS;
+    var top_weight = 0.0;
+    var top = NO_SPLAT;
+    var top_label = 0u;
+
+    if (thread < 2u) {
+        atomicStore(&open_pixels[thread], 0u);
+    }
+    var parity = 0u;
+    for (var batch = first; batch < end; batch += 256u) {
+        // Nobody reads the last batch any more.
+        workgroupBarrier();
+        let entry = batch + thread;
+        if (entry < end) {
+            let splat = entry_splats[entry];
+            batch_centres[thread] = centres[splat];
+            batch_extents[thread] = extents[splat];
+            batch_colors[thread] = colors[splat];
+            if (TOP_CONTRIBUTOR) {
+                batch_splats[thread] = splat;
+            }
+        }
+        if (transmittance > 0.0) {
+            atomicOr(&open_pixels[parity], 1u);
+        }
+        workgroupBarrier();
+        if (atomicLoad(&open_pixels[parity]) == 0u) {
+            break;
+        }
+        // The next batch's flag was last read before the barrier above.
+        parity = 1u - parity;
+        if (thread == 0u) {
+            atomicStore(&open_pixels[parity], 0u);
+        }
+        let size = min(256u, end - batch);
+        for (var i = 0u; i < size && transmittance > 0.0; i++) {
+            let centre = batch_centres[i];
+            let extent = batch_extents[i];
+            let d = point - centre.xy;
+            let v1 = centre.z * d.x + centre.w * d.y;
+            let v2 = extent.x * d.y;
+            let power = v1 * v1 + v2 * v2;
+            // α ≥ 1/255, decided on the power: the same condition with less rounding.
+            if (!(power <= extent.y + LOG2_255)) {
+                continue;
+            }
+            let alpha = min(exp2(extent.y - power), ALPHA_MAX);
+            let full = alpha * transmittance;
+            let after = transmittance - full;
+            if (!(after > TRANSMITTANCE_MIN)) {
+                transmittance = 0.0;
+                break;
+            }
+            let splat_color = batch_colors[i];
+            color += full * splat_color.xyz;
+            weight += full;
+            if (DEPTH) {
+                weighted_depth += full * extent.z;
+                if (transmittance > 0.5 && after <= 0.5) {
+                    median_depth = bitcast<u32>(extent.z);
+                }
+            }
+            if (TOP_CONTRIBUTOR) {
+                if (full > top_weight) {
+                    top_weight = full;
+                    top = batch_splats[i];
+                    top_label = bitcast<u32>(splat_color.w);
+                }
+            }
+            transmittance = after;
+        }
+    }
+
+    if (inside) {
+        let at = pixel - region.output_origin;
+        let index = at.y * region.output_stride + at.x;
+        image[index] = vec4<f32>(color, min(weight, MAX_IMAGE_ALPHA));
+        if (DEPTH || TOP_CONTRIBUTOR) {
+            var expected = NAN_BITS;
+            if (weight > 0.0) {
+                expected = bitcast<u32>(weighted_depth / weight);
+            }
+            layers[index] = vec4<u32>(expected, median_depth, top, top_label);
+        }
+    }
+}
