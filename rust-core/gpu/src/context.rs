@@ -1,11 +1,12 @@
 //! The device: choosing an adapter, and making its objects.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
 
 use wgpu::util::DeviceExt;
 
 use crate::GpuError;
+use crate::kernels::Kernels;
 
 /// Limits and features that are used no further than this, to run as a weaker device would.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -75,6 +76,7 @@ struct Inner {
     features: wgpu::Features,
     created: Counts,
     lost: Arc<AtomicBool>,
+    kernels: OnceLock<Kernels>,
 }
 
 /// Features that make something faster or measurable, and are used where they exist.
@@ -153,6 +155,7 @@ impl Gpu {
                 features,
                 created,
                 lost,
+                kernels: OnceLock::new(),
             }),
         })
     }
@@ -247,6 +250,11 @@ impl Gpu {
             .poll(wgpu::PollType::Poll)
             .map_err(|e| GpuError::Device(e.to_string()))
             .map(|_| ())
+    }
+
+    /// The pipelines of this device; made when they are first asked for.
+    pub(crate) fn kernels(&self) -> &Kernels {
+        self.inner.kernels.get_or_init(|| Kernels::new(self))
     }
 
     /// A buffer of at least `bytes`, zeroed.

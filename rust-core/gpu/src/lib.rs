@@ -6,6 +6,7 @@ mod context;
 mod deform;
 mod error;
 mod kernel;
+mod kernels;
 mod layout;
 mod project;
 mod readback;

@@ -3,12 +3,11 @@
 use glam::DVec3;
 use trapeze_scene::{Camera, FrameSettings};
 
-use crate::activate::HarmonicsStorage;
-use crate::kernel::{Binding, Interface, part, whole};
+use crate::kernel::{part, whole};
 use crate::layout::{Frame, Window};
 use crate::scene_buffers::{SceneBuffers, color_source_number};
 use crate::stage_pass::{Groups, dispatch};
-use crate::{Gpu, GpuError, shaders};
+use crate::{Gpu, GpuError};
 
 /// How far outside the image, in half image widths at unit depth, the Jacobian still follows x/z.
 const JACOBIAN_MARGIN: f64 = 0.3;
@@ -108,18 +107,7 @@ impl ProjectStage {
         sort_keys: &wgpu::Buffer,
         sort_keys_low: &wgpu::Buffer,
     ) -> Self {
-        use Binding::{Read, Uniform, Write};
-        let interface = Interface::new(
-            gpu,
-            "project",
-            &shaders::PROJECT.source(),
-            &[Uniform, Uniform, Read, Read, Read, Read, Write, Write, Write, Write, Write],
-        );
-        let half = scene.harmonics_storage == HarmonicsStorage::Half;
-        let constants = [
-            ("STORED_SH_DEGREE", f64::from(scene.sh_degree as u32)),
-            ("HALF_HARMONICS", f64::from(u8::from(half))),
-        ];
+        let kernels = gpu.kernels();
         let bytes = scene.bytes_per_splat();
         let most = gpu.max_binding() / bytes.pose.max(bytes.harmonics);
         let step = (most / WINDOW_STEP * WINDOW_STEP).max(WINDOW_STEP);
@@ -149,7 +137,7 @@ impl ProjectStage {
                 } else {
                     whole(&scene.motion)
                 };
-                let bind_group = interface.bind(
+                let bind_group = kernels.project_interface.bind(
                     gpu,
                     &[
                         whole(frame),
@@ -168,7 +156,7 @@ impl ProjectStage {
                 BoundWindow { count: window.count, bind_group }
             })
             .collect();
-        Self { pipeline: interface.pipeline(gpu, "project", &constants), windows }
+        Self { pipeline: kernels.project(gpu, scene.sh_degree, scene.harmonics_storage), windows }
     }
 
     pub(crate) fn record(&self, pass: &mut wgpu::ComputePass<'_>) {

@@ -11,10 +11,10 @@ use crate::project::{ProjectStage, ProjectedBuffers, frame_uniform};
 use crate::readback::{self, CountReader, Counts};
 use crate::region::TILE;
 use crate::scene_buffers::SceneBuffers;
-use crate::sort::{PairBuffers, SortKernels, SortPlan};
+use crate::sort::{PairBuffers, SortPlan};
 use crate::stage_pass::{Groups, Stage, begin};
 use crate::tiles::{
-    DrawingOrder, EntryBuffers, Target, TargetRequest, TileKernels, max_capacity, tile_count,
+    DrawingOrder, EntryBuffers, Target, TargetRequest, max_capacity, tile_count,
 };
 use crate::timing::{StageTimes, Timer};
 use crate::{Gpu, GpuError};
@@ -65,10 +65,8 @@ pub struct Renderer {
     deform: Option<DeformStage>,
     project: ProjectStage,
     projected: ProjectedBuffers,
-    sort_kernels: SortKernels,
     depth_sort: SortPlan,
     depth_blocks: u32,
-    tile_kernels: TileKernels,
     order: DrawingOrder,
     entries: EntryBuffers,
     main: Target,
@@ -108,11 +106,11 @@ impl Renderer {
         };
         let frame_uniform = gpu.uniform_of("frame", &[0; size_of::<crate::layout::Frame>()]);
         let projected = ProjectedBuffers::new(gpu, splats)?;
-        let sort_kernels = SortKernels::new(gpu);
+        let sort_kernels = &gpu.kernels().sort;
         let pairs = PairBuffers::new(gpu, ["depth keys", "splats"], splats)?;
         let depth_sort = SortPlan::new(
             gpu,
-            &sort_kernels,
+            sort_kernels,
             &pairs,
             &counts,
             counter::VISIBLE,
@@ -150,11 +148,9 @@ impl Renderer {
             deform,
             project,
             projected,
-            entries: EntryBuffers::new(gpu, &sort_kernels, &order.counts, capacity)?,
+            entries: EntryBuffers::new(gpu, sort_kernels, &order.counts, capacity)?,
             depth_blocks: splats.div_ceil(depth_sort.block),
             depth_sort,
-            sort_kernels,
-            tile_kernels: TileKernels::new(gpu),
             main: Target::new(gpu)?,
             pixel: Target::new(gpu)?,
             pieces: 1,
@@ -349,8 +345,9 @@ impl Renderer {
             // The old buffers go first: both together might not fit.
             self.main.unbind();
             self.pixel.unbind();
+            let kernels = &self.gpu.kernels().sort;
             self.entries =
-                EntryBuffers::new(&self.gpu, &self.sort_kernels, &self.order.counts, wanted)?;
+                EntryBuffers::new(&self.gpu, kernels, &self.order.counts, wanted)?;
         }
         Ok(true)
     }
@@ -365,6 +362,7 @@ impl Renderer {
         timed: bool,
     ) -> Result<wgpu::CommandEncoder, GpuError> {
         let gpu = &self.gpu;
+        let kernels = gpu.kernels();
         let size = [camera.width, camera.height];
         let request = TargetRequest {
             size,
@@ -380,7 +378,7 @@ impl Renderer {
             Output::Tile(_) => &mut self.pixel,
         };
         target.prepare(gpu, request, self.entries.pairs.capacity)?;
-        target.bind(gpu, &self.tile_kernels, &self.order, &self.projected, &self.entries);
+        target.bind(gpu, &kernels.tiles, &self.order, &self.projected, &self.entries);
         let target = &*target;
 
         self.buffers.select(gpu, settings);
@@ -400,7 +398,7 @@ impl Renderer {
             stage.clear_list(work, &mut encoder);
             let mut pass = begin(&mut encoder, Stage::Deform, timestamps);
             stage.record_mask(work, &mut pass);
-            target.record_network_arguments(&self.tile_kernels, &mut pass);
+            target.record_network_arguments(&kernels.tiles, &mut pass);
             let listed = Groups::Indirect(&self.order.arguments, NETWORK_ARGUMENTS);
             stage.record_network(work, &mut pass, listed);
         } else if timestamps.is_some() {
@@ -410,16 +408,16 @@ impl Renderer {
         {
             let mut pass = begin(&mut encoder, Stage::Sort, timestamps);
             let groups = Groups::Direct(self.depth_blocks);
-            self.depth_sort.record(&self.sort_kernels, &mut pass, 0, groups);
-            target.record_drawing_order(&self.tile_kernels, &mut pass);
+            self.depth_sort.record(&kernels.sort, &mut pass, 0, groups);
+            target.record_drawing_order(&kernels.tiles, &mut pass);
             for step in 1..self.depth_sort.len() {
                 let groups = self.order.groups(argument::DEPTH_SORT);
-                self.depth_sort.record(&self.sort_kernels, &mut pass, step, groups);
+                self.depth_sort.record(&kernels.sort, &mut pass, step, groups);
             }
         }
         target.record(
-            &self.tile_kernels,
-            &self.sort_kernels,
+            &kernels.tiles,
+            &kernels.sort,
             &self.order,
             &self.entries,
             layers,

@@ -7,11 +7,12 @@ use trapeze_scene::deformation::{PositionHead, RotationRule};
 use trapeze_scene::{DeformationNetwork, Scene};
 
 use super::weights::PackedWeights;
-use crate::kernel::{Binding, Interface, whole};
+use crate::kernel::whole;
+use crate::kernels::NetworkShape;
 use crate::layout::{self, Pose, argument, counter};
 use crate::scene_buffers::SceneBuffers;
 use crate::stage_pass::{Groups, dispatch};
-use crate::{Gpu, GpuError, shaders};
+use crate::{Gpu, GpuError};
 
 /// Splats per workgroup where the device has 32 KiB of workgroup memory, and where it has less.
 const SPLATS_LARGE: u32 = 32;
@@ -68,10 +69,7 @@ impl DeformStage {
         counts: &wgpu::Buffer,
     ) -> Result<Self, GpuError> {
         let packed = PackedWeights::new(network)?;
-        let rows = packed.width.max(packed.input_rows) as u32;
-        let memory = gpu.limits().max_compute_workgroup_storage_size;
-        let fits = |splats: u32| rows * splats * 4 <= memory;
-        let splats = if fits(SPLATS_LARGE) { SPLATS_LARGE } else { SPLATS_SMALL };
+        let shape = network_shape(gpu, &packed);
         let bytes = u64::from(buffers.count) * size_of::<Pose>() as u64;
         if bytes > gpu.max_binding() {
             return Err(GpuError::OutOfMemory {
@@ -86,8 +84,8 @@ impl DeformStage {
         let biases = gpu.storage_of("biases", &packed.biases)?;
         let block = uniform_block(scene, network, &packed);
         let uniform = gpu.uniform_of("deformation", bytemuck::bytes_of(&block));
-        let interface = network_interface(gpu);
-        let network_group = interface.bind(
+        let kernels = gpu.kernels();
+        let network_group = kernels.deform_interface.bind(
             gpu,
             &[
                 whole(&uniform),
@@ -99,20 +97,12 @@ impl DeformStage {
                 whole(&biases),
             ],
         );
-        let width = packed.width as u32;
-        let constants = [
-            ("WIDTH", f64::from(width)),
-            ("SPLATS", f64::from(splats)),
-            ("THREADS", f64::from(width / 4 * splats / 8)),
-            ("HIDDEN_VECTORS", f64::from(rows * splats / 4)),
-        ];
-        let mask_interface = mask_interface(gpu);
         let mut stage = Self {
-            splats_per_group: splats,
+            splats_per_group: shape.splats,
             count: buffers.count,
             has_motion: buffers.has_motion,
-            network: interface.pipeline(gpu, "deform", &constants),
-            mask: mask_interface.pipeline(gpu, "mask", &[]),
+            network: kernels.deform(gpu, shape),
+            mask: kernels.mask.clone(),
             mask_group: None,
             packed,
             poses,
@@ -125,7 +115,7 @@ impl DeformStage {
         };
         if stage.has_motion {
             let initial = stage.initial_poses(gpu, bytes)?;
-            stage.mask_group = Some(mask_interface.bind(
+            stage.mask_group = Some(kernels.mask_interface.bind(
                 gpu,
                 &[
                     whole(&stage.uniform),
@@ -228,16 +218,16 @@ impl DeformStage {
 /// Byte offset of the network's dispatch in the argument buffer.
 pub(crate) const NETWORK_ARGUMENTS: u64 = argument::NETWORK * argument::STRIDE;
 
-fn network_interface(gpu: &Gpu) -> Interface {
-    use Binding::{Read, Uniform, Write};
-    let bindings = [Uniform, Read, Write, Read, Read, Read, Read];
-    Interface::new(gpu, "deform", &shaders::DEFORM.source(), &bindings)
-}
-
-fn mask_interface(gpu: &Gpu) -> Interface {
-    use Binding::{Read, Uniform, Write};
-    let bindings = [Uniform, Read, Read, Write, Write, Write];
-    Interface::new(gpu, "mask", &shaders::MASK.source(), &bindings)
+/// The largest group of splats whose hidden vectors fit into workgroup memory.
+fn network_shape(gpu: &Gpu, packed: &PackedWeights) -> NetworkShape {
+    let shape = |splats| NetworkShape {
+        width: packed.width as u32,
+        input_rows: packed.input_rows as u32,
+        splats,
+    };
+    let fits =
+        shape(SPLATS_LARGE).workgroup_bytes() <= gpu.limits().max_compute_workgroup_storage_size;
+    shape(if fits { SPLATS_LARGE } else { SPLATS_SMALL })
 }
 
 fn uniform_block(

@@ -1,0 +1,110 @@
+//! Every pipeline of a device, made once and shared by its renderers.
+
+use std::collections::HashMap;
+use std::sync::{Mutex, PoisonError};
+
+use trapeze_scene::ShDegree;
+
+use crate::activate::HarmonicsStorage;
+use crate::kernel::{Binding, Interface};
+use crate::sort::SortKernels;
+use crate::tiles::TileKernels;
+use crate::{Gpu, shaders};
+
+/// Pipelines and their interfaces. Those with constants that depend on the scene are made when the
+/// first scene asks for them.
+#[derive(Debug)]
+pub(crate) struct Kernels {
+    pub sort: SortKernels,
+    pub tiles: TileKernels,
+    pub mask_interface: Interface,
+    pub mask: wgpu::ComputePipeline,
+    pub project_interface: Interface,
+    project: Mutex<HashMap<(ShDegree, bool), wgpu::ComputePipeline>>,
+    pub deform_interface: Interface,
+    deform: Mutex<HashMap<NetworkShape, wgpu::ComputePipeline>>,
+}
+
+/// What a pipeline of the network is made for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct NetworkShape {
+    /// Padded width of the hidden layers.
+    pub width: u32,
+    /// Padded width of γ(xyz).
+    pub input_rows: u32,
+    /// Splats per workgroup.
+    pub splats: u32,
+}
+
+impl NetworkShape {
+    /// Bytes of workgroup memory.
+    pub(crate) fn workgroup_bytes(self) -> u32 {
+        self.width.max(self.input_rows) * self.splats * 4
+    }
+}
+
+impl Kernels {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        use Binding::{Read, Uniform, Write};
+        let mask_interface = Interface::new(
+            gpu,
+            "mask",
+            &shaders::MASK.source(),
+            &[Uniform, Read, Read, Write, Write, Write],
+        );
+        Self {
+            sort: SortKernels::new(gpu),
+            tiles: TileKernels::new(gpu),
+            mask: mask_interface.pipeline(gpu, "mask", &[]),
+            mask_interface,
+            project_interface: Interface::new(
+                gpu,
+                "project",
+                &shaders::PROJECT.source(),
+                &[Uniform, Uniform, Read, Read, Read, Read, Write, Write, Write, Write, Write],
+            ),
+            project: Mutex::default(),
+            deform_interface: Interface::new(
+                gpu,
+                "deform",
+                &shaders::DEFORM.source(),
+                &[Uniform, Read, Write, Read, Read, Read, Read],
+            ),
+            deform: Mutex::default(),
+        }
+    }
+
+    /// The projection of scenes with harmonics of this degree and storage.
+    pub(crate) fn project(
+        &self,
+        gpu: &Gpu,
+        degree: ShDegree,
+        storage: HarmonicsStorage,
+    ) -> wgpu::ComputePipeline {
+        let half = storage == HarmonicsStorage::Half;
+        let mut pipelines = self.project.lock().unwrap_or_else(PoisonError::into_inner);
+        let make = || {
+            let constants = [
+                ("STORED_SH_DEGREE", f64::from(degree as u32)),
+                ("HALF_HARMONICS", f64::from(u8::from(half))),
+            ];
+            self.project_interface.pipeline(gpu, "project", &constants)
+        };
+        pipelines.entry((degree, half)).or_insert_with(make).clone()
+    }
+
+    /// The network of this shape.
+    pub(crate) fn deform(&self, gpu: &Gpu, shape: NetworkShape) -> wgpu::ComputePipeline {
+        let mut pipelines = self.deform.lock().unwrap_or_else(PoisonError::into_inner);
+        let make = || {
+            let constants = [
+                ("WIDTH", f64::from(shape.width)),
+                ("SPLATS", f64::from(shape.splats)),
+                ("THREADS", f64::from(shape.width / 4 * shape.splats / 8)),
+                ("HIDDEN_VECTORS", f64::from(shape.workgroup_bytes() / 16)),
+            ];
+            self.deform_interface.pipeline(gpu, "deform", &constants)
+        };
+        pipelines.entry(shape).or_insert_with(make).clone()
+    }
+}
