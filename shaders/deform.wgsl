@@ -91,14 +91,14 @@ fn accumulate(block: ptr<function, Block>, first_row: u32, rows: u32, features: 
 }
 
 fn multiply_add(block: ptr<function, Block>, w: vec4<f32>, a: vec4<f32>, b: vec4<f32>) {
-    (*block).s0 = fma(w, vec4<f32>(a.x), (*block).s0);
-    (*block).s1 = fma(w, vec4<f32>(a.y), (*block).s1);
-    (*block).s2 = fma(w, vec4<f32>(a.z), (*block).s2);
-    (*block).s3 = fma(w, vec4<f32>(a.w), (*block).s3);
-    (*block).s4 = fma(w, vec4<f32>(b.x), (*block).s4);
-    (*block).s5 = fma(w, vec4<f32>(b.y), (*block).s5);
-    (*block).s6 = fma(w, vec4<f32>(b.z), (*block).s6);
-    (*block).s7 = fma(w, vec4<f32>(b.w), (*block).s7);
+    (*block).s0 += w * a.x;
+    (*block).s1 += w * a.y;
+    (*block).s2 += w * a.z;
+    (*block).s3 += w * a.w;
+    (*block).s4 += w * b.x;
+    (*block).s5 += w * b.y;
+    (*block).s6 += w * b.z;
+    (*block).s7 += w * b.w;
 }
 
 /// ReLU, and into the rows of the thread's features.
@@ -185,7 +185,7 @@ fn head(task: u32, head_weights: u32, head_biases: u32) -> vec4<f32> {
     var sum = biases[head_biases + quarter];
     for (var row = 0u; row < WIDTH; row++) {
         let feature = hidden[row * (SPLATS / 4u) + splat / 4u][splat % 4u];
-        sum = fma(weights[head_weights + 4u * row + quarter], vec4<f32>(feature), sum);
+        sum += weights[head_weights + 4u * row + quarter] * feature;
     }
     return sum;
 }

@@ -20,7 +20,7 @@ fn turns_of(x: f32) -> vec4<f32> {
         high * INVERSE_TAU_1,
         low * INVERSE_TAU_1,
         high * INVERSE_TAU_2,
-        low * INVERSE_TAU_2 + high * INVERSE_TAU_3,
+        low * INVERSE_TAU_2 + x * INVERSE_TAU_3,
     );
 }
 

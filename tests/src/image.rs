@@ -6,9 +6,10 @@ use std::sync::Arc;
 use glam::DVec2;
 use trapeze_cpu::reference::{self, Projection, ReferenceFrame, Visit, pose_scene};
 use trapeze_cpu::{Renderer, RendererOptions};
+use trapeze_gpu::DeviceProfile;
 use trapeze_scene::{Camera, Frame, FrameSettings, NO_SPLAT, Scene};
 
-use crate::{TOLERANCE, compare};
+use crate::{TOLERANCE, compare, gpu, render_gpu};
 
 /// Settings with every image asked for.
 #[must_use]
@@ -56,8 +57,8 @@ pub fn assert_finite(frame: &Frame) {
     }
 }
 
-/// Renders on the CPU and in the reference, and checks that they agree to [`TOLERANCE`] outside
-/// flipped pixels; returns the CPU's frame.
+/// Renders on the CPU, on the GPU where there is one, and in the reference, and checks that they
+/// agree to [`TOLERANCE`] outside flipped pixels; returns the CPU's frame.
 ///
 /// # Panics
 /// When they do not.
@@ -68,7 +69,7 @@ pub fn assert_agrees(scene: &Scene, camera: &Camera, settings: &FrameSettings) -
 /// [`assert_agrees`] with a tolerance of its own, for ill-conditioned scenes.
 ///
 /// # Panics
-/// When CPU and reference do not agree.
+/// When CPU or GPU and reference do not agree.
 pub fn assert_agrees_within(
     tolerance: f64,
     scene: &Scene,
@@ -77,15 +78,24 @@ pub fn assert_agrees_within(
 ) -> Frame {
     let frame = render(scene, camera, settings, RendererOptions::default());
     let exact = reference::render(scene, camera, settings);
-    let comparison = compare(&frame, &exact, tolerance);
+    assert_comparable("CPU", &frame, &exact, tolerance);
+    if let Some(gpu) = gpu(DeviceProfile::Full) {
+        let frame = render_gpu(&gpu, scene, camera, settings);
+        assert_finite(&frame);
+        assert_comparable("GPU", &frame, &exact, tolerance);
+    }
+    frame
+}
+
+fn assert_comparable(backend: &str, frame: &Frame, exact: &ReferenceFrame, tolerance: f64) {
+    let comparison = compare(frame, exact, tolerance);
     let at = comparison.worst_pixel;
     assert!(
         comparison.agrees(tolerance),
-        "{comparison:?}, tolerance {tolerance}: {:?}, reference {:?}",
+        "{backend}: {comparison:?}, tolerance {tolerance}: {:?}, reference {:?}",
         frame.color[at],
         exact.color[at],
     );
-    frame
 }
 
 /// The reference for a window of a frame that is too large to render in f64: `size` pixels from

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use trapeze_cpu::{Renderer, reference};
-use trapeze_gpu::DeviceProfile;
 use trapeze_formats::{View, load_scene, read_npy, read_views};
+use trapeze_gpu::DeviceProfile;
 use trapeze_scene::{FrameSettings, Scene, psnr};
 use trapeze_tests::{TOLERANCE, assert_finite, compare, gpu};
 
@@ -77,7 +77,9 @@ fn assert_goldens(scene: Scene, folder: &Path, wanted: impl Fn(&View) -> bool) {
         let golden_psnr = psnr(&frame.color, &golden);
         let reference_psnr = psnr(&frame.color, &exact.to_frame().color);
         let comparison = compare(&frame, &exact, TOLERANCE);
-        println!("{name}: GPU {golden_psnr:.2} dB, {reference_psnr:.2} dB against f64, {comparison:?}");
+        println!(
+            "{name}: GPU {golden_psnr:.2} dB, {reference_psnr:.2} dB against f64, {comparison:?}"
+        );
         assert!(golden_psnr >= GPU_PSNR, "{name}: GPU {golden_psnr} dB");
         assert!(reference_psnr >= GPU_PSNR, "{name}: GPU {reference_psnr} dB against f64");
         assert!(comparison.agrees(TOLERANCE), "{name}: GPU {comparison:?}");

@@ -18,6 +18,8 @@ pub(crate) enum CliError {
     #[error(transparent)]
     Scene(#[from] SceneError),
     #[error(transparent)]
+    Gpu(#[from] trapeze_gpu::GpuError),
+    #[error(transparent)]
     Edit(#[from] EditError),
     #[error(transparent)]
     Train(#[from] TrainError),

@@ -42,11 +42,7 @@ fn linear_scale(log_scale: f32) -> f32 {
 fn unit_quaternion(q: [f32; 4]) -> [f32; 4] {
     let q = q.map(f64::from);
     let norm = q.iter().map(|c| c * c).sum::<f64>().sqrt();
-    if norm.is_finite() && norm > 0.0 {
-        q.map(|c| (c / norm) as f32)
-    } else {
-        [1.0, 0.0, 0.0, 0.0]
-    }
+    if norm.is_finite() && norm > 0.0 { q.map(|c| (c / norm) as f32) } else { [1.0, 0.0, 0.0, 0.0] }
 }
 
 /// How SH coefficients are stored on the GPU.
@@ -95,9 +91,7 @@ pub(crate) fn pack_harmonics(
             let bits = match storage {
                 HarmonicsStorage::Single => value(i, word).to_bits(),
                 HarmonicsStorage::Half => {
-                    let half = |index| {
-                        u32::from(half::f16::from_f32(value(i, index)).to_bits())
-                    };
+                    let half = |index| u32::from(half::f16::from_f32(value(i, index)).to_bits());
                     half(2 * word) | half(2 * word + 1) << 16
                 }
             };
@@ -117,8 +111,19 @@ mod tests {
     #[test]
     fn poses_are_those_of_the_reference() {
         let odd = [
-            0.0, -0.0, 1.0, -3.0, 40.0, -40.0, 1e20, 1e-20, f32::NAN, f32::INFINITY,
-            f32::NEG_INFINITY, f32::MAX, f32::MIN_POSITIVE,
+            0.0,
+            -0.0,
+            1.0,
+            -3.0,
+            40.0,
+            -40.0,
+            1e20,
+            1e-20,
+            f32::NAN,
+            f32::INFINITY,
+            f32::NEG_INFINITY,
+            f32::MAX,
+            f32::MIN_POSITIVE,
         ];
         let n = odd.len() * odd.len();
         let pick = |i: usize| odd[i % odd.len()];
@@ -167,8 +172,11 @@ mod tests {
         let half = pack_harmonics(&splats, 4, HarmonicsStorage::Half);
         for i in 0..n {
             for index in 0..12 {
-                let exact =
-                    if index < 3 { splats.sh_dc[i][index] } else { splats.sh_rest_of(i)[index - 3] };
+                let exact = if index < 3 {
+                    splats.sh_dc[i][index]
+                } else {
+                    splats.sh_rest_of(i)[index - 3]
+                };
                 let word = single[((i / 32) * 12 + index) * 32 + i % 32];
                 assert_eq!(f32::from_bits(word), exact);
                 let word = half[((i / 32) * 6 + index / 2) * 32 + i % 32];

@@ -41,8 +41,6 @@ pub struct GpuOptions {
 pub struct Created {
     /// Buffers.
     pub buffers: u64,
-    /// Textures.
-    pub textures: u64,
     /// Bind groups.
     pub bind_groups: u64,
     /// Pipelines.
@@ -54,7 +52,6 @@ pub struct Created {
 #[derive(Debug, Default)]
 struct Counts {
     buffers: AtomicU64,
-    textures: AtomicU64,
     bind_groups: AtomicU64,
     pipelines: AtomicU64,
     waits: AtomicU64,
@@ -185,7 +182,6 @@ impl Gpu {
         let read = |count: &AtomicU64| count.load(Ordering::Relaxed);
         Created {
             buffers: read(&counts.buffers),
-            textures: read(&counts.textures),
             bind_groups: read(&counts.bind_groups),
             pipelines: read(&counts.pipelines),
             waits: read(&counts.waits),
@@ -227,6 +223,22 @@ impl Gpu {
     pub fn max_binding(&self) -> u64 {
         let limits = self.limits();
         limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
+    }
+
+    /// Whether the device has what the matrix kernel of the network was written for: products of
+    /// 16 × 16 × 16 halves summed in 32 bits, subgroups of 32, and room for its workgroup memory.
+    #[must_use]
+    pub fn has_matrices(&self) -> bool {
+        let wanted = wgpu::Features::EXPERIMENTAL_COOPERATIVE_MATRIX | wgpu::Features::SHADER_F16;
+        let info = self.adapter_info();
+        self.features().contains(wanted)
+            && (info.subgroup_min_size, info.subgroup_max_size) == (32, 32)
+            && self.limits().max_compute_workgroup_storage_size >= MATRIX_KERNEL_MEMORY
+            && self.adapter().cooperative_matrix_properties().iter().any(|shape| {
+                (shape.m_size, shape.n_size, shape.k_size) == (16, 16, 16)
+                    && shape.ab_type == wgpu::CooperativeScalarType::F16
+                    && shape.cr_type == wgpu::CooperativeScalarType::F32
+            })
     }
 
     /// Waits until the GPU has done all that was submitted.
@@ -332,11 +344,10 @@ impl Gpu {
     pub(crate) fn count_pipeline(&self) {
         self.inner.created.pipelines.fetch_add(1, Ordering::Relaxed);
     }
-
-    pub(crate) fn count_texture(&self) {
-        self.inner.created.textures.fetch_add(1, Ordering::Relaxed);
-    }
 }
+
+/// Workgroup memory of deform_matrix.wgsl, bytes.
+const MATRIX_KERNEL_MEMORY: u32 = 16_896 * 2 + 2048 * 4;
 
 /// Bytes of one write of an upload.
 const UPLOAD_PIECE: usize = 16 << 20;
@@ -403,7 +414,11 @@ fn imposed_limits(adapter: wgpu::Limits, options: &GpuOptions) -> wgpu::Limits {
 fn check_limits(adapter: &wgpu::Adapter, limits: &wgpu::Limits) -> Result<(), GpuError> {
     let needs = [
         ("storage buffers per stage", 9, u64::from(limits.max_storage_buffers_per_shader_stage)),
-        ("workgroup memory in bytes", 16 << 10, u64::from(limits.max_compute_workgroup_storage_size)),
+        (
+            "workgroup memory in bytes",
+            16 << 10,
+            u64::from(limits.max_compute_workgroup_storage_size),
+        ),
         ("threads per workgroup", 256, u64::from(limits.max_compute_invocations_per_workgroup)),
     ];
     match needs.into_iter().find(|&(_, need, have)| have < need) {

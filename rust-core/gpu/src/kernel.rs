@@ -26,12 +26,7 @@ pub(crate) struct Interface {
 }
 
 impl Interface {
-    pub(crate) fn new(
-        gpu: &Gpu,
-        label: &'static str,
-        source: &str,
-        bindings: &[Binding],
-    ) -> Self {
+    pub(crate) fn new(gpu: &Gpu, label: &'static str, source: &str, bindings: &[Binding]) -> Self {
         let device = gpu.device();
         let entries: Vec<wgpu::BindGroupLayoutEntry> = (0u32..)
             .zip(bindings)
@@ -50,11 +45,10 @@ impl Interface {
                 count: None,
             })
             .collect();
-        let bind_group_layout = device
-            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some(label),
-                entries: &entries,
-            });
+        let bind_group_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some(label),
+            entries: &entries,
+        });
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(label),
             bind_group_layouts: &[Some(&bind_group_layout)],
@@ -92,11 +86,7 @@ impl Interface {
     }
 
     /// Binds buffers, in the order of the bindings.
-    pub(crate) fn bind(
-        &self,
-        gpu: &Gpu,
-        buffers: &[wgpu::BufferBinding<'_>],
-    ) -> wgpu::BindGroup {
+    pub(crate) fn bind(&self, gpu: &Gpu, buffers: &[wgpu::BufferBinding<'_>]) -> wgpu::BindGroup {
         debug_assert_eq!(buffers.len(), self.bindings.len(), "{}", self.label);
         gpu.count_bind_group();
         let entries: Vec<wgpu::BindGroupEntry<'_>> = (0u32..)

@@ -1,7 +1,7 @@
 //! Every pipeline of a device, made once and shared by its renderers.
 
 use std::collections::HashMap;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 use trapeze_scene::ShDegree;
 
@@ -23,7 +23,19 @@ pub(crate) struct Kernels {
     project: Mutex<HashMap<(ShDegree, bool), wgpu::ComputePipeline>>,
     pub deform_interface: Interface,
     deform: Mutex<HashMap<NetworkShape, wgpu::ComputePipeline>>,
+    deform_matrix: OnceLock<(Interface, wgpu::ComputePipeline)>,
 }
+
+/// Bindings of the network's kernels.
+const NETWORK_BINDINGS: [Binding; 7] = [
+    Binding::Uniform,
+    Binding::Read,
+    Binding::Write,
+    Binding::Read,
+    Binding::Read,
+    Binding::Read,
+    Binding::Read,
+];
 
 /// What a pipeline of the network is made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -68,9 +80,10 @@ impl Kernels {
                 gpu,
                 "deform",
                 &shaders::DEFORM.source(),
-                &[Uniform, Read, Write, Read, Read, Read, Read],
+                &NETWORK_BINDINGS,
             ),
             deform: Mutex::default(),
+            deform_matrix: OnceLock::new(),
         }
     }
 
@@ -106,5 +119,15 @@ impl Kernels {
             self.deform_interface.pipeline(gpu, "deform", &constants)
         };
         pipelines.entry(shape).or_insert_with(make).clone()
+    }
+
+    /// The network on cooperative matrices; only for devices that have them.
+    pub(crate) fn deform_matrix(&self, gpu: &Gpu) -> &(Interface, wgpu::ComputePipeline) {
+        self.deform_matrix.get_or_init(|| {
+            let source = shaders::DEFORM_MATRIX.source();
+            let interface = Interface::new(gpu, "deform_matrix", &source, &NETWORK_BINDINGS);
+            let pipeline = interface.pipeline(gpu, "deform_matrix", &[]);
+            (interface, pipeline)
+        })
     }
 }

@@ -111,7 +111,6 @@ pub(crate) struct Deformation {
 /// Indices of common/counters.wgsl.
 pub(crate) mod counter {
     pub(crate) const VISIBLE: usize = 0;
-    pub(crate) const ENTRIES: usize = 1;
     pub(crate) const SORTED_ENTRIES: usize = 2;
     pub(crate) const DYNAMIC: usize = 3;
     pub(crate) const MOST_ENTRIES: usize = 4;
@@ -170,28 +169,67 @@ mod tests {
     #[test]
     fn structs_are_laid_out_as_the_kernels_read_them() {
         assert_same_layout!(
-            shaders::PROJECT, Frame, rotation_x, rotation_y, rotation_z, centre_high, centre_low,
-            rotation_z_low, focal, principal, slope_min, slope_max, image, sh_degree,
-            color_source, heat_scale, zero, padding_1, padding_2,
+            shaders::PROJECT,
+            Frame,
+            rotation_x,
+            rotation_y,
+            rotation_z,
+            centre_high,
+            centre_low,
+            rotation_z_low,
+            focal,
+            principal,
+            slope_min,
+            slope_max,
+            image,
+            sh_degree,
+            color_source,
+            heat_scale,
+            zero,
+            padding_1,
+            padding_2,
         );
-        assert_same_layout!(
-            shaders::PROJECT, Pose, position, log2_opacity, rotation, scale, label,
-        );
+        assert_same_layout!(shaders::PROJECT, Pose, position, log2_opacity, rotation, scale, label,);
         assert_same_layout!(shaders::PROJECT, Window, first, count, padding_1, padding_2);
         assert_same_layout!(shaders::PROJECT, Cluster, color, shown);
+        assert_same_layout!(shaders::SORT, SortPass, shift, count, keys_per_thread, max_blocks,);
         assert_same_layout!(
-            shaders::SORT, SortPass, shift, count, keys_per_thread, max_blocks,
+            shaders::BIN,
+            Region,
+            first_tile,
+            tiles,
+            image,
+            output_origin,
+            output_stride,
+            capacity,
+            sort_keys_per_thread,
+            padding,
         );
         assert_same_layout!(
-            shaders::BIN, Region, first_tile, tiles, image, output_origin, output_stride,
-            capacity, sort_keys_per_thread, padding,
+            shaders::ARGUMENTS,
+            Sizes,
+            depth_block,
+            network_splats,
+            padding_1,
+            padding_2,
         );
         assert_same_layout!(
-            shaders::ARGUMENTS, Sizes, depth_block, network_splats, padding_1, padding_2,
-        );
-        assert_same_layout!(
-            shaders::DEFORM, Deformation, origin, origin_turns, splats, masked, threshold,
-            octaves, depth, skip_layer, input_rows, screw, as_trained, zero, padding_1, padding_2,
+            shaders::DEFORM,
+            Deformation,
+            origin,
+            origin_turns,
+            splats,
+            masked,
+            threshold,
+            octaves,
+            depth,
+            skip_layer,
+            input_rows,
+            screw,
+            as_trained,
+            zero,
+            padding_1,
+            padding_2,
         );
     }
 
@@ -216,7 +254,6 @@ mod tests {
         use super::{argument, counter};
         for (name, value) in [
             ("VISIBLE", counter::VISIBLE as u64),
-            ("ENTRIES", counter::ENTRIES as u64),
             ("SORTED_ENTRIES", counter::SORTED_ENTRIES as u64),
             ("DYNAMIC", counter::DYNAMIC as u64),
             ("MOST_ENTRIES", counter::MOST_ENTRIES as u64),
@@ -234,9 +271,10 @@ mod tests {
 
     #[test]
     fn every_shader_is_valid() {
-        for shader in shaders::ALL {
-            let module = naga::front::wgsl::parse_str(&shader.source())
-                .unwrap_or_else(|e| panic!("{}: {}", shader.name, e.emit_to_string(&shader.source())));
+        for shader in shaders::ALL.into_iter().chain(shaders::OPTIONAL) {
+            let module = naga::front::wgsl::parse_str(&shader.source()).unwrap_or_else(|e| {
+                panic!("{}: {}", shader.name, e.emit_to_string(&shader.source()))
+            });
             naga::valid::Validator::new(
                 naga::valid::ValidationFlags::all(),
                 naga::valid::Capabilities::all(),

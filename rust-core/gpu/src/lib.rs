@@ -4,6 +4,7 @@
 mod activate;
 mod context;
 mod deform;
+mod device_report;
 mod error;
 mod kernel;
 mod kernels;
@@ -21,6 +22,11 @@ mod timing;
 
 pub use activate::HarmonicsStorage;
 pub use context::{Created, DeviceProfile, Gpu, GpuOptions};
+pub use deform::NetworkPrecision;
+pub use device_report::DeviceReport;
 pub use error::GpuError;
 pub use renderer::{Pick, Renderer, RendererOptions};
 pub use timing::StageTimes;
+
+#[cfg(test)]
+mod kernel_tests;

@@ -35,7 +35,9 @@ pub(crate) fn frame_uniform(
         focal: focal.map(|v| v as f32),
         principal: principal.map(|v| v as f32),
         slope_min: std::array::from_fn(|i| -(principal[i] / focal[i] + margin[i]) as f32),
-        slope_max: std::array::from_fn(|i| ((size[i] - principal[i]) / focal[i] + margin[i]) as f32),
+        slope_max: std::array::from_fn(|i| {
+            ((size[i] - principal[i]) / focal[i] + margin[i]) as f32
+        }),
         image: size.map(|v| v as f32),
         sh_degree: settings.max_sh_degree as u32,
         color_source: color_source_number(settings.color_source),

@@ -1,21 +1,21 @@
 //! The stages put together.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use trapeze_scene::{Camera, Frame, FrameSettings, NO_SPLAT, Scene, ShDegree};
 
 use crate::activate::HarmonicsStorage;
-use crate::deform::{DeformStage, NETWORK_ARGUMENTS};
-use crate::layout::{argument, counter};
+use crate::deform::{DeformStage, DeformWork, NetworkPrecision};
+use crate::kernels::Kernels;
+use crate::layout::{Pose, argument, counter};
 use crate::project::{ProjectStage, ProjectedBuffers, frame_uniform};
 use crate::readback::{self, CountReader, Counts};
 use crate::region::TILE;
 use crate::scene_buffers::SceneBuffers;
 use crate::sort::{PairBuffers, SortPlan};
 use crate::stage_pass::{Groups, Stage, begin};
-use crate::tiles::{
-    DrawingOrder, EntryBuffers, Target, TargetRequest, max_capacity, tile_count,
-};
+use crate::tiles::{DrawingOrder, EntryBuffers, Target, TargetRequest, max_capacity, tile_count};
 use crate::timing::{StageTimes, Timer};
 use crate::{Gpu, GpuError};
 
@@ -26,6 +26,8 @@ pub struct RendererOptions {
     pub harmonics: HarmonicsStorage,
     /// Highest SH band to keep.
     pub max_sh_degree: ShDegree,
+    /// Arithmetic of the deformation network.
+    pub precision: NetworkPrecision,
     /// Tile entries to make room for at first; the buffers grow when a frame needs more.
     pub initial_entries: Option<u32>,
 }
@@ -35,6 +37,7 @@ impl Default for RendererOptions {
         Self {
             harmonics: HarmonicsStorage::default(),
             max_sh_degree: ShDegree::Three,
+            precision: NetworkPrecision::default(),
             initial_entries: None,
         }
     }
@@ -96,12 +99,13 @@ impl Renderer {
         scene: Arc<Scene>,
         options: RendererOptions,
     ) -> Result<Self, GpuError> {
-        let buffers =
-            SceneBuffers::upload(gpu, &scene, options.max_sh_degree, options.harmonics)?;
+        let buffers = SceneBuffers::upload(gpu, &scene, options.max_sh_degree, options.harmonics)?;
         let splats = buffers.count;
         let counts = gpu.storage("counts", 4 * counter::COUNT as u64)?;
         let deform = match &scene.deformation {
-            Some(network) => Some(DeformStage::new(gpu, &scene, network, &buffers, &counts)?),
+            Some(network) => {
+                Some(DeformStage::new(gpu, &scene, network, &buffers, &counts, options.precision)?)
+            }
             None => None,
         };
         let frame_uniform = gpu.uniform_of("frame", &[0; size_of::<crate::layout::Frame>()]);
@@ -127,7 +131,7 @@ impl Renderer {
             &pairs.keys[0],
             &pairs.values[0],
         );
-        let network_splats = deform.as_ref().map_or(1, |stage| stage.splats_per_group);
+        let network_splats = deform.as_ref().map_or(1, DeformStage::splats_per_group);
         let order = DrawingOrder::new(
             gpu,
             splats,
@@ -192,11 +196,7 @@ impl Renderer {
     /// # Errors
     /// [`GpuError`] when the camera cannot project, the frame does not fit into the device, or the
     /// device is lost.
-    pub fn render(
-        &mut self,
-        camera: &Camera,
-        settings: &FrameSettings,
-    ) -> Result<Frame, GpuError> {
+    pub fn render(&mut self, camera: &Camera, settings: &FrameSettings) -> Result<Frame, GpuError> {
         camera.validate()?;
         let layers = settings.depth || settings.top_contributor;
         self.draw_until_complete(camera, settings, layers, Output::Image)?;
@@ -297,6 +297,56 @@ impl Renderer {
         }
     }
 
+    /// Name of the kernel that evaluates the network; `None` in scenes without one.
+    #[must_use]
+    pub fn network_kernel(&self) -> Option<&'static str> {
+        self.deform.as_ref().map(DeformStage::kernel_name)
+    }
+
+    /// Poses the splats and nothing else, and returns the time it took on the GPU; `None` where the
+    /// device cannot tell.
+    ///
+    /// # Errors
+    /// [`GpuError::Device`] when the device is lost.
+    pub fn deform_timed(
+        &mut self,
+        time: f32,
+        static_threshold: Option<f32>,
+    ) -> Result<Option<Duration>, GpuError> {
+        let Some(stage) = &mut self.deform else { return Ok(None) };
+        // The dispatch's size is computed by a kernel that is bound to a target.
+        let request =
+            TargetRequest { size: [TILE; 2], only_tile: Some([0, 0]), layers: false, pieces: 1 };
+        let kernels = self.gpu.kernels();
+        self.pixel.prepare(&self.gpu, request, self.entries.pairs.capacity)?;
+        self.pixel.bind(&self.gpu, &kernels.tiles, &self.order, &self.projected, &self.entries);
+        let mut encoder = self.gpu.device().create_command_encoder(&Default::default());
+        let queries = self.timer.as_ref().map(Timer::queries);
+        let work = stage.prepare(&self.gpu, time, static_threshold);
+        record_deform(stage, work, kernels, &self.pixel, &self.order, &mut encoder, queries);
+        if let Some(timer) = &self.timer {
+            timer.resolve_deform(&mut encoder);
+        }
+        self.gpu.queue().submit([encoder.finish()]);
+        self.gpu.wait()?;
+        self.timer.as_ref().map_or(Ok(None), |timer| timer.read_deform(&self.gpu))
+    }
+
+    /// Positions of all splats at a time, relative to the scene's origin.
+    ///
+    /// # Errors
+    /// [`GpuError::Device`] when the device is lost.
+    pub fn deformed_positions(
+        &mut self,
+        time: f32,
+        static_threshold: Option<f32>,
+    ) -> Result<Vec<[f32; 3]>, GpuError> {
+        self.deform_timed(time, static_threshold)?;
+        let poses = self.deform.as_ref().map_or(&self.buffers.canonical_poses, |s| &s.poses);
+        let poses: Vec<Pose> = readback::pixels(&self.gpu, poses, u64::from(self.buffers.count))?;
+        Ok(poses.iter().map(|pose| pose.position).collect())
+    }
+
     /// Draws until the frame has fitted into the buffers.
     fn draw_until_complete(
         &mut self,
@@ -346,8 +396,7 @@ impl Renderer {
             self.main.unbind();
             self.pixel.unbind();
             let kernels = &self.gpu.kernels().sort;
-            self.entries =
-                EntryBuffers::new(&self.gpu, kernels, &self.order.counts, wanted)?;
+            self.entries = EntryBuffers::new(&self.gpu, kernels, &self.order.counts, wanted)?;
         }
         Ok(true)
     }
@@ -395,12 +444,7 @@ impl Renderer {
         encoder.clear_buffer(&self.order.counts, 4 * counter::MOST_ENTRIES as u64, Some(4));
         if let Some(stage) = &mut self.deform {
             let work = stage.prepare(gpu, settings.time, settings.static_threshold);
-            stage.clear_list(work, &mut encoder);
-            let mut pass = begin(&mut encoder, Stage::Deform, timestamps);
-            stage.record_mask(work, &mut pass);
-            target.record_network_arguments(&kernels.tiles, &mut pass);
-            let listed = Groups::Indirect(&self.order.arguments, NETWORK_ARGUMENTS);
-            stage.record_network(work, &mut pass, listed);
+            record_deform(stage, work, kernels, target, &self.order, &mut encoder, timestamps);
         } else if timestamps.is_some() {
             drop(begin(&mut encoder, Stage::Deform, timestamps));
         }
@@ -415,20 +459,29 @@ impl Renderer {
                 self.depth_sort.record(&kernels.sort, &mut pass, step, groups);
             }
         }
-        target.record(
-            &kernels.tiles,
-            &kernels.sort,
-            &self.order,
-            &self.entries,
-            layers,
-            &mut encoder,
-            timestamps,
-        );
+        target.record(gpu, &self.order, &self.entries, layers, &mut encoder, timestamps);
         if let Some(timer) = self.timer.as_ref().filter(|_| timestamps.is_some()) {
             timer.resolve(&mut encoder);
         }
         Ok(encoder)
     }
+}
+
+/// Records the work of the deformation stage.
+fn record_deform(
+    stage: &DeformStage,
+    work: DeformWork,
+    kernels: &Kernels,
+    target: &Target,
+    order: &DrawingOrder,
+    encoder: &mut wgpu::CommandEncoder,
+    timestamps: Option<&wgpu::QuerySet>,
+) {
+    stage.clear_list(work, encoder);
+    let mut pass = begin(encoder, Stage::Deform, timestamps);
+    stage.record_mask(work, &mut pass);
+    target.record_network_arguments(&kernels.tiles, &mut pass);
+    stage.record_network(work, &mut pass, order.groups(argument::NETWORK));
 }
 
 /// What a frame is drawn into.

@@ -53,17 +53,29 @@ pub const DEFORM: Shader = Shader {
         wgsl!("deform"),
     ],
 };
+/// The deformation network on cooperative matrices; only where the device has them.
+pub const DEFORM_MATRIX: Shader = Shader {
+    name: "deform_matrix",
+    parts: &[
+        wgsl!("common/enable_matrix"),
+        DISPATCH,
+        COUNTERS,
+        FRAME,
+        NUMBERS,
+        TRIGONOMETRY,
+        DEFORMATION,
+        DEFORM_SPLAT,
+        wgsl!("deform_matrix"),
+    ],
+};
 /// World → image.
 pub const PROJECT: Shader =
     Shader { name: "project", parts: &[DISPATCH, FRAME, NUMBERS, wgsl!("project")] };
 /// Stable radix sort.
-pub const SORT: Shader =
-    Shader { name: "sort", parts: &[DISPATCH, COUNTERS, SCAN, wgsl!("sort")] };
+pub const SORT: Shader = Shader { name: "sort", parts: &[DISPATCH, COUNTERS, SCAN, wgsl!("sort")] };
 /// Sizes of later dispatches.
-pub const ARGUMENTS: Shader = Shader {
-    name: "arguments",
-    parts: &[DISPATCH, COUNTERS, SCAN, REGION, wgsl!("arguments")],
-};
+pub const ARGUMENTS: Shader =
+    Shader { name: "arguments", parts: &[DISPATCH, COUNTERS, SCAN, REGION, wgsl!("arguments")] };
 /// Splats × tiles.
 pub const BIN: Shader =
     Shader { name: "bin", parts: &[DISPATCH, COUNTERS, SCAN, REGION, wgsl!("bin")] };
@@ -76,3 +88,12 @@ pub const RASTERIZE: Shader =
 
 /// Every shader that any device can run.
 pub const ALL: [Shader; 8] = [MASK, DEFORM, PROJECT, SORT, ARGUMENTS, BIN, RANGES, RASTERIZE];
+
+/// Shaders that need features which not every device has.
+pub const OPTIONAL: [Shader; 1] = [DEFORM_MATRIX];
+
+/// The common files behind the positional encoding, for its test.
+#[cfg(test)]
+pub(crate) fn encoding_source() -> String {
+    [DISPATCH, TRIGONOMETRY].join("\n")
+}

@@ -254,9 +254,8 @@ impl Target {
             Some(first) => vec![TileRect { first, tiles: [1, 1] }],
             None => region::cut([width, height], request.pieces, max_rows),
         };
-        let unchanged = self.size == request.size
-            && self.regions == regions
-            && self.capacity == capacity;
+        let unchanged =
+            self.size == request.size && self.regions == regions && self.capacity == capacity;
         let windowed = regions.len() > 1;
         if windowed && !unchanged {
             // Windows of the image are bound one by one.
@@ -444,8 +443,7 @@ impl Target {
     /// Records binning and blending of all regions.
     pub(crate) fn record(
         &self,
-        kernels: &TileKernels,
-        sort_kernels: &SortKernels,
+        gpu: &Gpu,
         order: &DrawingOrder,
         entries: &EntryBuffers,
         layers: bool,
@@ -453,6 +451,7 @@ impl Target {
         timestamps: Option<&wgpu::QuerySet>,
     ) {
         let Some(bound) = &self.bound else { return };
+        let (kernels, sort_kernels) = (&gpu.kernels().tiles, &gpu.kernels().sort);
         for (i, rect) in self.regions.iter().enumerate() {
             let offset = [(i * REGION_STRIDE) as u32];
             let sort = entries.sort(rect.count());

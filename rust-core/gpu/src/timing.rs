@@ -57,13 +57,26 @@ impl Timer {
         encoder.resolve_query_set(&self.queries, 0..QUERIES, &self.resolved, 0);
     }
 
+    /// Resolves the deformation stage alone, when nothing else was recorded.
+    pub(crate) fn resolve_deform(&self, encoder: &mut wgpu::CommandEncoder) {
+        encoder.resolve_query_set(&self.queries, 0..2, &self.resolved, 0);
+    }
+
+    /// Time of the deformation stage alone.
+    pub(crate) fn read_deform(&self, gpu: &Gpu) -> Result<Option<Duration>, GpuError> {
+        let ticks: Vec<u64> = readback::pixels(gpu, &self.resolved, 2)?;
+        Ok(self.between(ticks[0], ticks[1]))
+    }
+
+    fn between(&self, from: u64, to: u64) -> Option<Duration> {
+        let ticks = to.checked_sub(from)? as f64;
+        Some(Duration::from_nanos((ticks * f64::from(self.nanoseconds)) as u64))
+    }
+
     /// Times of the last frame; `None` when a clock has run backwards.
     pub(crate) fn read(&self, gpu: &Gpu) -> Result<Option<StageTimes>, GpuError> {
         let ticks: Vec<u64> = readback::pixels(gpu, &self.resolved, u64::from(QUERIES))?;
-        let between = |from: u64, to: u64| {
-            let ticks = to.checked_sub(from)?;
-            Some(Duration::from_nanos((ticks as f64 * f64::from(self.nanoseconds)) as u64))
-        };
+        let between = |from, to| self.between(from, to);
         let times = || {
             Some(StageTimes {
                 deform: between(ticks[0], ticks[1])?,

@@ -5,7 +5,7 @@ mod train;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use clap::{Args, Subcommand};
+use clap::{Args, Subcommand, ValueEnum};
 use serde::Serialize;
 use trapeze_cpu::deform::DeformationStage;
 use trapeze_cpu::{Renderer, reference};
@@ -13,7 +13,8 @@ use trapeze_formats::load_scene;
 use trapeze_formats::ply::write_ply;
 use trapeze_scene::{Frame, FrameSettings, ImageError, Scene, ShDegree, Splats};
 
-use super::render::static_threshold;
+use super::bench_gpu;
+use super::render::{Backend, static_threshold};
 use crate::error::CliError;
 use crate::measure::{Machine, Timing, time_runs};
 use crate::output::print_json;
@@ -34,33 +35,48 @@ pub(crate) enum Bench {
 #[derive(Debug, Args)]
 pub(crate) struct RenderArguments {
     #[command(flatten)]
-    scene: SceneArguments,
+    pub(super) scene: SceneArguments,
     #[command(flatten)]
-    view: ViewArguments,
+    pub(super) view: ViewArguments,
     /// Time of the frames.
     #[arg(long, default_value_t = 0.0)]
-    time: f32,
+    pub(super) time: f32,
+    /// What computes the images.
+    #[arg(long, value_enum, default_value_t)]
+    pub(super) backend: Backend,
+    /// Store SH coefficients on the GPU as half floats.
+    #[arg(long)]
+    pub(super) half_harmonics: bool,
     /// Timed runs.
     #[arg(long, default_value_t = 30)]
-    runs: usize,
+    pub(super) runs: usize,
     /// Print JSON.
     #[arg(long)]
-    json: bool,
+    pub(super) json: bool,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct DeformArguments {
     #[command(flatten)]
-    scene: SceneArguments,
+    pub(super) scene: SceneArguments,
     /// Let this share of the splats (0-100) rest at t = 0.
     #[arg(long, value_name = "PERCENTILE")]
-    static_percentile: Option<f32>,
+    pub(super) static_percentile: Option<f32>,
+    /// What evaluates the network.
+    #[arg(long, value_enum, default_value_t)]
+    pub(super) backend: Backend,
+    /// Arithmetic of the network on the GPU.
+    #[arg(long, value_enum, default_value_t)]
+    pub(super) precision: Precision,
+    /// Repeat the scene's splats until there are this many.
+    #[arg(long, value_name = "SPLATS")]
+    pub(super) splats: Option<u32>,
     /// Timed runs.
     #[arg(long, default_value_t = 30)]
-    runs: usize,
+    pub(super) runs: usize,
     /// Print JSON.
     #[arg(long)]
-    json: bool,
+    pub(super) json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -78,27 +94,57 @@ pub(crate) struct LoadArguments {
     json: bool,
 }
 
+/// Arithmetic of the deformation network on the GPU.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Precision {
+    /// 32-bit floats.
+    #[default]
+    F32,
+    /// 16-bit weights and hidden vectors, where the device has passed its self-check.
+    F16,
+}
+
 /// Error of a result against the f64 reference.
 #[derive(Debug, Serialize)]
-struct Error {
+pub(super) struct Error {
     #[serde(skip_serializing_if = "Option::is_none")]
-    psnr: Option<f64>,
-    max: f64,
+    pub(super) psnr: Option<f64>,
+    pub(super) max: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
-    p999: Option<f64>,
+    pub(super) p999: Option<f64>,
+}
+
+impl From<ImageError> for Error {
+    fn from(error: ImageError) -> Self {
+        Self {
+            psnr: error.psnr.is_finite().then_some(error.psnr),
+            max: error.max,
+            p999: Some(error.p999),
+        }
+    }
 }
 
 #[derive(Debug, Serialize)]
-struct BenchReport {
-    what: &'static str,
-    scene: String,
-    splats: usize,
+pub(super) struct BenchReport {
+    pub(super) what: &'static str,
+    pub(super) scene: String,
+    pub(super) splats: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
-    detail: Option<serde_json::Value>,
-    timing: Timing,
+    pub(super) detail: Option<serde_json::Value>,
+    pub(super) timing: Timing,
     #[serde(skip_serializing_if = "Option::is_none")]
-    error_against_f64: Option<Error>,
-    machine: Machine,
+    pub(super) error_against_f64: Option<Error>,
+    pub(super) machine: Machine,
+}
+
+impl DeformArguments {
+    /// The scene, its splats repeated as asked for.
+    pub(super) fn load_scene(&self) -> Result<Scene, CliError> {
+        let scene = self.scene.load()?;
+        let Some(splats) = self.splats.filter(|_| !scene.is_empty()) else { return Ok(scene) };
+        let indices: Vec<u32> = (0..splats).map(|i| i % scene.len() as u32).collect();
+        Ok(scene.gather(&indices))
+    }
 }
 
 impl Bench {
@@ -114,6 +160,11 @@ impl Bench {
 }
 
 fn render(arguments: &RenderArguments) -> Result<BenchReport, CliError> {
+    match arguments.backend {
+        Backend::Cpu => {}
+        Backend::Gpu => return bench_gpu::render(arguments),
+        Backend::Reference => return Err(not_timed()),
+    }
     let scene = Arc::new(arguments.scene.load()?);
     let camera = arguments.view.camera(&scene)?;
     let settings = FrameSettings { time: arguments.time, ..FrameSettings::default() };
@@ -146,17 +197,23 @@ fn render(arguments: &RenderArguments) -> Result<BenchReport, CliError> {
             },
         })),
         timing,
-        error_against_f64: Some(Error {
-            psnr: error.psnr.is_finite().then_some(error.psnr),
-            max: error.max,
-            p999: Some(error.p999),
-        }),
+        error_against_f64: Some(error.into()),
         machine: Machine::this(),
     })
 }
 
+/// The reference is there to be right; `trapeze report` times it once.
+fn not_timed() -> CliError {
+    CliError::argument("--backend", "cpu or gpu", "reference")
+}
+
 fn deform(arguments: &DeformArguments) -> Result<BenchReport, CliError> {
-    let scene = arguments.scene.load()?;
+    match arguments.backend {
+        Backend::Cpu => {}
+        Backend::Gpu => return bench_gpu::deform(arguments),
+        Backend::Reference => return Err(not_timed()),
+    }
+    let scene = arguments.load_scene()?;
     let Some(network) = &scene.deformation else {
         return Err(CliError::argument("SCENE", "a scene with a deformation network", "none"));
     };
@@ -199,6 +256,17 @@ fn largest_position_error(
     dynamic: &[u32],
 ) -> Error {
     let deformed = stage.deform(scene, time, threshold);
+    position_error(scene, &deformed.positions, time, dynamic)
+}
+
+/// Largest difference of these splats' positions from what the f64 network gives, on up to 2 000 of
+/// them.
+pub(super) fn position_error(
+    scene: &Scene,
+    positions: &[[f32; 3]],
+    time: f32,
+    dynamic: &[u32],
+) -> Error {
     let step = dynamic.len().div_ceil(2000).max(1);
     let mut max = 0.0f64;
     if let Some(network) = &scene.deformation {
@@ -211,7 +279,7 @@ fn largest_position_error(
                 scene.origin,
                 f64::from(time),
             );
-            for (a, b) in deformed.positions[i].iter().zip(exact.position) {
+            for (a, b) in positions[i].iter().zip(exact.position) {
                 max = max.max((f64::from(*a) - b).abs());
             }
         }

@@ -1,6 +1,7 @@
 //! One file per command.
 
 mod bench;
+mod bench_gpu;
 mod convert;
 mod demo;
 mod eval;

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use clap::{Args, ValueEnum};
 use trapeze_cpu::{Renderer, reference};
 use trapeze_formats::write_npy;
+use trapeze_gpu::{Gpu, GpuOptions};
 use trapeze_scene::{
     Camera, ClusterSet, ColorSource, Frame, FrameSettings, NO_SPLAT, Scene, Selection, ShDegree,
 };
@@ -65,6 +66,8 @@ pub(crate) enum Backend {
     /// SIMD and threads.
     #[default]
     Cpu,
+    /// Metal or Vulkan.
+    Gpu,
     /// The f64 specification: slow.
     Reference,
 }
@@ -103,7 +106,7 @@ struct Background(Option<[f32; 3]>);
 pub(crate) fn run(arguments: &Arguments) -> Result<(), CliError> {
     let scene = Arc::new(arguments.scene.load()?);
     let settings = arguments.settings(&scene)?;
-    let mut painter = Painter::new(arguments.backend, scene);
+    let mut painter = Painter::new(arguments.backend, scene)?;
     match arguments.path {
         None => render_one(arguments, &mut painter, &settings),
         Some(path) => render_path(arguments, path, &mut painter, &settings),
@@ -167,17 +170,29 @@ fn label_of(scene: &Scene, id: u32) -> Result<u32, CliError> {
     })
 }
 
-/// Renders frames with either backend.
+/// Renders frames with any backend.
 pub(crate) struct Painter {
     scene: Arc<Scene>,
-    /// `None` for the reference, which keeps nothing between frames.
-    renderer: Option<Renderer>,
+    renderer: AnyRenderer,
+}
+
+enum AnyRenderer {
+    Cpu(Box<Renderer>),
+    Gpu(Box<trapeze_gpu::Renderer>),
+    /// Keeps nothing between frames.
+    Reference,
 }
 
 impl Painter {
-    pub(crate) fn new(backend: Backend, scene: Arc<Scene>) -> Self {
-        let renderer = (backend == Backend::Cpu).then(|| Renderer::new(scene.clone()));
-        Self { scene, renderer }
+    pub(crate) fn new(backend: Backend, scene: Arc<Scene>) -> Result<Self, CliError> {
+        let renderer = match backend {
+            Backend::Cpu => AnyRenderer::Cpu(Box::new(Renderer::new(scene.clone()))),
+            Backend::Gpu => {
+                AnyRenderer::Gpu(Box::new(trapeze_gpu::Renderer::new(&open_gpu()?, scene.clone())?))
+            }
+            Backend::Reference => AnyRenderer::Reference,
+        };
+        Ok(Self { scene, renderer })
     }
 
     pub(crate) fn paint(
@@ -187,10 +202,17 @@ impl Painter {
     ) -> Result<Frame, CliError> {
         camera.validate()?;
         Ok(match &mut self.renderer {
-            Some(renderer) => renderer.render(camera, settings)?,
-            None => reference::render(&self.scene, camera, settings).to_frame(),
+            AnyRenderer::Cpu(renderer) => renderer.render(camera, settings)?,
+            AnyRenderer::Gpu(renderer) => renderer.render(camera, settings)?,
+            AnyRenderer::Reference => reference::render(&self.scene, camera, settings).to_frame(),
         })
     }
+}
+
+/// The device that GPU commands run on; TRAPEZE_GPU names a part of its name.
+pub(crate) fn open_gpu() -> Result<Gpu, CliError> {
+    let adapter = std::env::var("TRAPEZE_GPU").ok();
+    Ok(Gpu::open(&GpuOptions { adapter, ..GpuOptions::default() })?)
 }
 
 fn render_one(

@@ -6,24 +6,44 @@ use glam::DVec3;
 use trapeze_scene::deformation::{PositionHead, RotationRule};
 use trapeze_scene::{DeformationNetwork, Scene};
 
+use super::matrix;
 use super::weights::PackedWeights;
-use crate::kernel::whole;
+use crate::kernel::{Interface, whole};
 use crate::kernels::NetworkShape;
-use crate::layout::{self, Pose, argument, counter};
+use crate::layout::{self, Pose, counter};
 use crate::scene_buffers::SceneBuffers;
 use crate::stage_pass::{Groups, dispatch};
-use crate::{Gpu, GpuError};
+use crate::{Gpu, GpuError, readback};
 
 /// Splats per workgroup where the device has 32 KiB of workgroup memory, and where it has less.
 const SPLATS_LARGE: u32 = 32;
 const SPLATS_SMALL: u32 = 16;
 
+/// Arithmetic of the deformation network. Positions are encoded in 32 bits in either.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum NetworkPrecision {
+    /// 32-bit weights and hidden vectors.
+    #[default]
+    Single,
+    /// 16-bit weights and hidden vectors, summed in 32 bits, on devices with cooperative matrices
+    /// on which it has been found to agree with the 32-bit kernel; elsewhere as `Single`.
+    Half,
+}
+
+/// A kernel of the network.
+#[derive(Debug)]
+struct NetworkKernel {
+    name: &'static str,
+    pipeline: wgpu::ComputePipeline,
+    bind_group: wgpu::BindGroup,
+    /// Splats per workgroup.
+    splats: u32,
+}
+
 /// Poses the splats of a scene with a network.
 #[derive(Debug)]
 pub(crate) struct DeformStage {
     packed: PackedWeights,
-    /// Splats per workgroup of the network.
-    pub splats_per_group: u32,
     count: u32,
     has_motion: bool,
     /// The state of the last frame.
@@ -32,8 +52,7 @@ pub(crate) struct DeformStage {
     block: layout::Deformation,
     biases: wgpu::Buffer,
     counts: wgpu::Buffer,
-    network: wgpu::ComputePipeline,
-    network_group: wgpu::BindGroup,
+    network: NetworkKernel,
     mask: wgpu::ComputePipeline,
     mask_group: Option<wgpu::BindGroup>,
     /// The moment that `poses` shows.
@@ -67,6 +86,7 @@ impl DeformStage {
         network: &DeformationNetwork,
         buffers: &SceneBuffers,
         counts: &wgpu::Buffer,
+        precision: NetworkPrecision,
     ) -> Result<Self, GpuError> {
         let packed = PackedWeights::new(network)?;
         let shape = network_shape(gpu, &packed);
@@ -80,28 +100,50 @@ impl DeformStage {
         }
         let poses = gpu.storage("poses", bytes)?;
         let dynamic = gpu.storage("dynamic splats", u64::from(buffers.count) * 4)?;
-        let weights = gpu.storage_of("weights", &packed.weights)?;
         let biases = gpu.storage_of("biases", &packed.biases)?;
         let block = uniform_block(scene, network, &packed);
         let uniform = gpu.uniform_of("deformation", bytemuck::bytes_of(&block));
         let kernels = gpu.kernels();
-        let network_group = kernels.deform_interface.bind(
-            gpu,
-            &[
-                whole(&uniform),
-                whole(&buffers.canonical_poses),
-                whole(&poses),
-                whole(&dynamic),
-                whole(counts),
-                whole(&weights),
-                whole(&biases),
-            ],
-        );
+        let bind = |interface: &Interface, weights: &wgpu::Buffer| {
+            interface.bind(
+                gpu,
+                &[
+                    whole(&uniform),
+                    whole(&buffers.canonical_poses),
+                    whole(&poses),
+                    whole(&dynamic),
+                    whole(counts),
+                    whole(weights),
+                    whole(&biases),
+                ],
+            )
+        };
+        let plain = NetworkKernel {
+            name: "f32",
+            pipeline: kernels.deform(gpu, shape),
+            bind_group: bind(
+                &kernels.deform_interface,
+                &gpu.storage_of("weights", &packed.weights)?,
+            ),
+            splats: shape.splats,
+        };
+        let wants_half = precision == NetworkPrecision::Half && matrix::fits(gpu, &packed);
+        let matrix = match matrix::half_weights(&packed).filter(|_| wants_half) {
+            None => None,
+            Some(weights) => {
+                let (interface, pipeline) = kernels.deform_matrix(gpu);
+                Some(NetworkKernel {
+                    name: "f16 matrices",
+                    pipeline: pipeline.clone(),
+                    bind_group: bind(interface, &gpu.storage_of("half weights", &weights)?),
+                    splats: matrix::MATRIX_SPLATS,
+                })
+            }
+        };
         let mut stage = Self {
-            splats_per_group: shape.splats,
             count: buffers.count,
             has_motion: buffers.has_motion,
-            network: kernels.deform(gpu, shape),
+            network: plain,
             mask: kernels.mask.clone(),
             mask_group: None,
             packed,
@@ -110,9 +152,11 @@ impl DeformStage {
             block,
             biases,
             counts: counts.clone(),
-            network_group,
             shown: None,
         };
+        if let Some(matrix) = matrix {
+            stage.use_if_it_agrees(gpu, matrix, &buffers.canonical_poses)?;
+        }
         if stage.has_motion {
             let initial = stage.initial_poses(gpu, bytes)?;
             stage.mask_group = Some(kernels.mask_interface.bind(
@@ -128,6 +172,51 @@ impl DeformStage {
             ));
         }
         Ok(stage)
+    }
+
+    /// Replaces the network's kernel by another one, when both pose the first splats alike.
+    fn use_if_it_agrees(
+        &mut self,
+        gpu: &Gpu,
+        candidate: NetworkKernel,
+        canonical: &wgpu::Buffer,
+    ) -> Result<(), GpuError> {
+        const CHECKED: u32 = 4096;
+        const CHECK_TIME: f32 = 0.37;
+        let checked = u64::from(self.count.min(CHECKED));
+        let canonical: Vec<Pose> = readback::pixels(gpu, canonical, checked)?;
+        let plain = self.evaluate_at(gpu, CHECK_TIME, checked)?;
+        let name = candidate.name;
+        let before = std::mem::replace(&mut self.network, candidate);
+        self.invalidate();
+        let ours = self.evaluate_at(gpu, CHECK_TIME, checked)?;
+        self.invalidate();
+        if !matrix::agrees(&canonical, &plain, &ours) {
+            tracing::warn!("the {name} network differs from the plain one on this device");
+            self.network = before;
+        }
+        Ok(())
+    }
+
+    /// Poses of the first `count` splats at a time.
+    fn evaluate_at(&mut self, gpu: &Gpu, time: f32, count: u64) -> Result<Vec<Pose>, GpuError> {
+        let work = self.prepare(gpu, time, None);
+        let mut encoder = gpu.device().create_command_encoder(&Default::default());
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        self.record_network(work, &mut pass, Groups::Direct(0));
+        drop(pass);
+        gpu.queue().submit([encoder.finish()]);
+        readback::pixels(gpu, &self.poses, count)
+    }
+
+    /// Name of the kernel that evaluates the network.
+    pub(crate) fn kernel_name(&self) -> &'static str {
+        self.network.name
+    }
+
+    /// Splats per workgroup of the network.
+    pub(crate) fn splats_per_group(&self) -> u32 {
+        self.network.splats
     }
 
     /// Evaluates all splats at t = 0 and keeps a copy.
@@ -203,20 +292,17 @@ impl DeformStage {
     ) {
         let groups = match work {
             DeformWork::Nothing => return,
-            DeformWork::All => Groups::Direct(self.count.div_ceil(self.splats_per_group)),
+            DeformWork::All => Groups::Direct(self.count.div_ceil(self.network.splats)),
             DeformWork::Listed | DeformWork::Masked => listed,
         };
         if self.count == 0 {
             return;
         }
-        pass.set_pipeline(&self.network);
-        pass.set_bind_group(0, &self.network_group, &[]);
+        pass.set_pipeline(&self.network.pipeline);
+        pass.set_bind_group(0, &self.network.bind_group, &[]);
         dispatch(pass, groups);
     }
 }
-
-/// Byte offset of the network's dispatch in the argument buffer.
-pub(crate) const NETWORK_ARGUMENTS: u64 = argument::NETWORK * argument::STRIDE;
 
 /// The largest group of splats whose hidden vectors fit into workgroup memory.
 fn network_shape(gpu: &Gpu, packed: &PackedWeights) -> NetworkShape {

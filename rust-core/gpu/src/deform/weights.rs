@@ -78,7 +78,8 @@ impl PackedWeights {
             biases.resize((i + 1) * width, 0.0);
         }
         push_heads(&mut weights, &mut biases, network, width);
-        let time_part = |layer: usize| time_part(&network.hidden[layer], position_width, time_width);
+        let time_part =
+            |layer: usize| time_part(&network.hidden[layer], position_width, time_width);
         Ok(Self {
             width,
             input_rows,

@@ -1,10 +1,11 @@
 //! Crowded tiles, many tiles, and images and scenes of extreme size.
 
 use trapeze_cpu::Renderer;
-use trapeze_scene::{Camera, FrameSettings, Scene, SceneError, ShDegree};
+use trapeze_gpu::DeviceProfile;
+use trapeze_scene::{Camera, Frame, FrameSettings, Scene, SceneError, ShDegree};
 use trapeze_tests::{
     Random, Splat, TOLERANCE, assert_agrees, assert_finite, camera_at_origin, cloud, cloud_camera,
-    compare, everything, render_crop, scene_of,
+    compare, everything, gpu, render_crop, render_gpu, scene_of,
 };
 
 #[test]
@@ -68,20 +69,27 @@ fn veils(n: u16) -> Vec<Splat> {
 /// Checks windows of a frame that is too large for the reference.
 fn assert_windows_agree(scene: &Scene, camera: &Camera, settings: &FrameSettings) {
     let mut renderer = Renderer::new(scene.clone().into());
-    let frame = renderer.render(camera, settings).unwrap();
-    assert_finite(&frame);
+    assert_windows_of(&renderer.render(camera, settings).unwrap(), scene, camera, settings);
+    drop(renderer);
+    if let Some(gpu) = gpu(DeviceProfile::Full) {
+        assert_windows_of(&render_gpu(&gpu, scene, camera, settings), scene, camera, settings);
+    }
+}
+
+fn assert_windows_of(frame: &Frame, scene: &Scene, camera: &Camera, settings: &FrameSettings) {
+    assert_finite(frame);
     let size = (24, 20);
     let (right, bottom) = (camera.width - size.0, camera.height - size.1);
     for (x, y) in [(0, 0), (right, 0), (0, bottom), (right, bottom), (right / 2, bottom / 3)] {
         let exact = render_crop(scene, camera, settings, (x, y), size);
         let rows = (y..y + size.1).map(|row| (row * camera.width + x) as usize);
-        let window = trapeze_scene::Frame {
+        let window = Frame {
             width: size.0,
             height: size.1,
             color: rows
                 .flat_map(|start| frame.color[start..start + size.0 as usize].iter().copied())
                 .collect(),
-            ..trapeze_scene::Frame::default()
+            ..Frame::default()
         };
         let comparison = compare(&window, &exact, TOLERANCE);
         assert!(comparison.agrees(TOLERANCE), "window at ({x}, {y}): {comparison:?}");

@@ -1,4 +1,5 @@
-//! The stability suite on the CPU: every hard case that needs neither training nor a GPU.
+//! The stability suite: every hard case that needs no training, on the CPU and, through the same
+//! comparison with the reference, on the GPU (software Vulkan where there is no other).
 //!
 //! Each test checks three things: nothing in the image is NaN or infinite (depth: NaN exactly
 //! where nothing was hit), the behaviour that is stated for the case, and agreement with the f64
