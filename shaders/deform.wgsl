@@ -4,8 +4,9 @@
 // common/deformation, common/deform_splat.
 //
 // A workgroup evaluates SPLATS splats. The hidden vectors stay in workgroup memory, feature-major:
-// row k holds feature k of all splats. A thread computes 4 features of 8 splats; per row of
-// weights it reads one vec4 of weights and two vec4 of features for 32 multiply–adds. Layers
+// row k holds feature k of all splats. A thread computes 4 features of 16 splats; per row of
+// weights it reads one vec4 of weights and four vec4 of features, the same ones as its neighbours,
+// for 64 multiply–adds. Layers
 // overwrite the hidden vectors in place, between barriers. The part of the input that depends on
 // the time alone is in the biases of layer 0 and of the skip layer, computed once per frame in
 // double precision; γ(xyz) is encoded again for the skip layer, which is cheaper than keeping it.
@@ -25,14 +26,14 @@
 override WIDTH: u32 = 256u;
 /// Splats per workgroup.
 override SPLATS: u32 = 32u;
-/// WIDTH / 4 · SPLATS / 8.
-override THREADS: u32 = 256u;
+/// WIDTH / 4 · SPLATS / 16.
+override THREADS: u32 = 128u;
 /// max(WIDTH, input rows) · SPLATS / 4.
 override HIDDEN_VECTORS: u32 = 2048u;
 
 var<workgroup> hidden: array<vec4<f32>, HIDDEN_VECTORS>;
 
-/// Four features of eight splats.
+/// Four features of sixteen splats.
 struct Block {
     s0: vec4<f32>,
     s1: vec4<f32>,
@@ -42,6 +43,14 @@ struct Block {
     s5: vec4<f32>,
     s6: vec4<f32>,
     s7: vec4<f32>,
+    s8: vec4<f32>,
+    s9: vec4<f32>,
+    s10: vec4<f32>,
+    s11: vec4<f32>,
+    s12: vec4<f32>,
+    s13: vec4<f32>,
+    s14: vec4<f32>,
+    s15: vec4<f32>,
 }
 
 /// γ of the group's positions into the first rows; rows up to `input_rows` are filled with zeros.
@@ -78,45 +87,56 @@ fn accumulate(block: ptr<function, Block>, first_row: u32, rows: u32, features: 
         let w1 = weights[weight_at + WIDTH / 4u];
         let w2 = weights[weight_at + 2u * (WIDTH / 4u)];
         let w3 = weights[weight_at + 3u * (WIDTH / 4u)];
-        multiply_add(block, w0, hidden[hidden_at], hidden[hidden_at + 1u]);
-        hidden_at += SPLATS / 4u;
-        multiply_add(block, w1, hidden[hidden_at], hidden[hidden_at + 1u]);
-        hidden_at += SPLATS / 4u;
-        multiply_add(block, w2, hidden[hidden_at], hidden[hidden_at + 1u]);
-        hidden_at += SPLATS / 4u;
-        multiply_add(block, w3, hidden[hidden_at], hidden[hidden_at + 1u]);
-        hidden_at += SPLATS / 4u;
+        multiply_add(block, w0, hidden_at);
+        multiply_add(block, w1, hidden_at + SPLATS / 4u);
+        multiply_add(block, w2, hidden_at + 2u * (SPLATS / 4u));
+        multiply_add(block, w3, hidden_at + 3u * (SPLATS / 4u));
+        hidden_at += SPLATS;
         weight_at += WIDTH;
     }
 }
 
-fn multiply_add(block: ptr<function, Block>, w: vec4<f32>, a: vec4<f32>, b: vec4<f32>) {
-    (*block).s0 += w * a.x;
-    (*block).s1 += w * a.y;
-    (*block).s2 += w * a.z;
-    (*block).s3 += w * a.w;
-    (*block).s4 += w * b.x;
-    (*block).s5 += w * b.y;
-    (*block).s6 += w * b.z;
-    (*block).s7 += w * b.w;
+/// block += w ⊗ (one feature of sixteen splats).
+fn multiply_add(block: ptr<function, Block>, w: vec4<f32>, at: u32) {
+    let a = hidden[at];
+    let b = hidden[at + 1u];
+    let c = hidden[at + 2u];
+    let d = hidden[at + 3u];
+    (*block).s0 = fma(w, vec4<f32>(a.x), (*block).s0);
+    (*block).s1 = fma(w, vec4<f32>(a.y), (*block).s1);
+    (*block).s2 = fma(w, vec4<f32>(a.z), (*block).s2);
+    (*block).s3 = fma(w, vec4<f32>(a.w), (*block).s3);
+    (*block).s4 = fma(w, vec4<f32>(b.x), (*block).s4);
+    (*block).s5 = fma(w, vec4<f32>(b.y), (*block).s5);
+    (*block).s6 = fma(w, vec4<f32>(b.z), (*block).s6);
+    (*block).s7 = fma(w, vec4<f32>(b.w), (*block).s7);
+    (*block).s8 = fma(w, vec4<f32>(c.x), (*block).s8);
+    (*block).s9 = fma(w, vec4<f32>(c.y), (*block).s9);
+    (*block).s10 = fma(w, vec4<f32>(c.z), (*block).s10);
+    (*block).s11 = fma(w, vec4<f32>(c.w), (*block).s11);
+    (*block).s12 = fma(w, vec4<f32>(d.x), (*block).s12);
+    (*block).s13 = fma(w, vec4<f32>(d.y), (*block).s13);
+    (*block).s14 = fma(w, vec4<f32>(d.z), (*block).s14);
+    (*block).s15 = fma(w, vec4<f32>(d.w), (*block).s15);
 }
 
 /// ReLU, and into the rows of the thread's features.
 fn store(block: Block, features: u32, quad: u32) {
-    let zero = vec4<f32>(0.0);
-    let low = transpose(mat4x4<f32>(
-        max(block.s0, zero), max(block.s1, zero), max(block.s2, zero), max(block.s3, zero)));
-    let high = transpose(mat4x4<f32>(
-        max(block.s4, zero), max(block.s5, zero), max(block.s6, zero), max(block.s7, zero)));
     let at = 4u * features * (SPLATS / 4u) + quad;
-    hidden[at] = low[0];
-    hidden[at + 1u] = high[0];
-    hidden[at + SPLATS / 4u] = low[1];
-    hidden[at + SPLATS / 4u + 1u] = high[1];
-    hidden[at + 2u * (SPLATS / 4u)] = low[2];
-    hidden[at + 2u * (SPLATS / 4u) + 1u] = high[2];
-    hidden[at + 3u * (SPLATS / 4u)] = low[3];
-    hidden[at + 3u * (SPLATS / 4u) + 1u] = high[3];
+    store_quad(at, block.s0, block.s1, block.s2, block.s3);
+    store_quad(at + 1u, block.s4, block.s5, block.s6, block.s7);
+    store_quad(at + 2u, block.s8, block.s9, block.s10, block.s11);
+    store_quad(at + 3u, block.s12, block.s13, block.s14, block.s15);
+}
+
+/// Four features of four splats, into four rows.
+fn store_quad(at: u32, a: vec4<f32>, b: vec4<f32>, c: vec4<f32>, d: vec4<f32>) {
+    let zero = vec4<f32>(0.0);
+    let rows = transpose(mat4x4<f32>(max(a, zero), max(b, zero), max(c, zero), max(d, zero)));
+    hidden[at] = rows[0];
+    hidden[at + SPLATS / 4u] = rows[1];
+    hidden[at + 2u * (SPLATS / 4u)] = rows[2];
+    hidden[at + 3u * (SPLATS / 4u)] = rows[3];
 }
 
 @compute @workgroup_size(THREADS)
@@ -127,14 +147,17 @@ fn deform(
 ) {
     let first = flat_group(group, groups) * SPLATS;
     let features = thread % (WIDTH / 4u);
-    let quad = 2u * (thread / (WIDTH / 4u));
+    let quad = 4u * (thread / (WIDTH / 4u));
 
     encode(first, thread);
     workgroupBarrier();
     var row = 0u;
     for (var layer = 0u; layer < deformation.depth; layer++) {
         let bias = biases[layer * (WIDTH / 4u) + features];
-        var block = Block(bias, bias, bias, bias, bias, bias, bias, bias);
+        var block = Block(
+            bias, bias, bias, bias, bias, bias, bias, bias,
+            bias, bias, bias, bias, bias, bias, bias, bias,
+        );
         let rows = select(WIDTH, deformation.input_rows, layer == 0u);
         accumulate(&block, row, rows, features, quad);
         row += rows;
@@ -151,27 +174,33 @@ fn deform(
     }
     let head_weights = row * (WIDTH / 4u);
     let head_biases = deformation.depth * (WIDTH / 4u);
-    // Heads: four outputs of one splat at a time, then all outputs of a splat by one thread. With
-    // 4 · SPLATS ≤ THREADS · 2 two turns are enough; a thread keeps both in registers.
-    let first_outputs = head(thread, head_weights, head_biases);
-    let second_outputs = head(thread + THREADS, head_weights, head_biases);
+    // Heads: four outputs of one splat at a time, then all outputs of a splat by one thread. There
+    // are 4 · SPLATS ≤ 4 · THREADS of them, which the threads keep until all have been computed.
+    let outputs_0 = head(thread, head_weights, head_biases);
+    let outputs_1 = head(thread + THREADS, head_weights, head_biases);
+    let outputs_2 = head(thread + 2u * THREADS, head_weights, head_biases);
+    let outputs_3 = head(thread + 3u * THREADS, head_weights, head_biases);
     workgroupBarrier();
-    if (thread < 4u * SPLATS) {
-        hidden[thread] = first_outputs;
-    }
-    if (thread + THREADS < 4u * SPLATS) {
-        hidden[thread + THREADS] = second_outputs;
-    }
+    store_head(thread, outputs_0);
+    store_head(thread + THREADS, outputs_1);
+    store_head(thread + 2u * THREADS, outputs_2);
+    store_head(thread + 3u * THREADS, outputs_3);
     workgroupBarrier();
-    if (thread < SPLATS && first + thread < evaluated_splats()) {
-        let splat = listed_splat(first + thread);
+    for (var i = thread; i < SPLATS && first + i < evaluated_splats(); i += THREADS) {
+        let splat = listed_splat(first + i);
         poses[splat] = apply_outputs(
             canonical_poses[splat],
-            hidden[thread],
-            hidden[SPLATS + thread],
-            hidden[2u * SPLATS + thread],
-            hidden[3u * SPLATS + thread],
+            hidden[i],
+            hidden[SPLATS + i],
+            hidden[2u * SPLATS + i],
+            hidden[3u * SPLATS + i],
         );
+    }
+}
+
+fn store_head(task: u32, outputs: vec4<f32>) {
+    if (task < 4u * SPLATS) {
+        hidden[task] = outputs;
     }
 }
 

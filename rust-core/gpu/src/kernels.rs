@@ -113,7 +113,7 @@ impl Kernels {
             let constants = [
                 ("WIDTH", f64::from(shape.width)),
                 ("SPLATS", f64::from(shape.splats)),
-                ("THREADS", f64::from(shape.width / 4 * shape.splats / 8)),
+                ("THREADS", f64::from(shape.width / 4 * shape.splats / 16)),
                 ("HIDDEN_VECTORS", f64::from(shape.workgroup_bytes() / 16)),
             ];
             self.deform_interface.pipeline(gpu, "deform", &constants)
