@@ -27,6 +27,7 @@ const TRANSMITTANCE_MIN: f32 = 1e-4;
 /// Largest alpha of a pixel: 1 − 10⁻⁴, rounded down. T stays above its minimum by rule; rounding
 /// in the sum of weights must not say otherwise.
 const MAX_IMAGE_ALPHA: f32 = 0.9999;
+const MAX_FLOAT: f32 = 3.4028234e38;
 const NAN_BITS: u32 = 0x7fc00000u;
 const NO_SPLAT: u32 = 0xffffffffu;
 
@@ -143,7 +144,8 @@ fn rasterize(
         if (DEPTH || TOP_CONTRIBUTOR) {
             var expected = NAN_BITS;
             if (weight > 0.0) {
-                expected = bitcast<u32>(weighted_depth / weight);
+                // A quotient of finite sums, which rounding must not carry past the largest float.
+                expected = bitcast<u32>(min(weighted_depth / weight, MAX_FLOAT));
             }
             layers[index] = vec4<u32>(expected, median_depth, top, top_label);
         }

@@ -45,13 +45,18 @@ fn read_mapped(
     read: impl FnOnce(&[u8]),
 ) -> Result<(), GpuError> {
     let slice = staging.slice(..bytes);
-    let failed = Arc::new(AtomicU8::new(PENDING));
-    let state = failed.clone();
+    let mapped = Arc::new(AtomicU8::new(PENDING));
+    let state = mapped.clone();
     slice.map_async(wgpu::MapMode::Read, move |result| {
         state.store(if result.is_ok() { READY } else { FAILED }, Ordering::Release);
     });
     gpu.wait()?;
-    if failed.load(Ordering::Acquire) != READY {
+    // Another thread that polls the device may be the one that runs the callback.
+    while mapped.load(Ordering::Acquire) == PENDING {
+        std::thread::yield_now();
+        gpu.poll()?;
+    }
+    if mapped.load(Ordering::Acquire) != READY {
         return Err(GpuError::Device("a buffer could not be mapped".into()));
     }
     {
