@@ -28,9 +28,8 @@ const DEPTH_SORT: u32 = 0u;
 const BIN: u32 = 1u;
 const EMIT: u32 = 2u;
 const ENTRY_SORT: u32 = 3u;
-const RANGES: u32 = 4u;
-const RASTERIZE: u32 = 5u;
-const NETWORK: u32 = 6u;
+const RASTERIZE: u32 = 4u;
+const NETWORK: u32 = 5u;
 
 const SPLATS_PER_GROUP: u32 = 64u;
 
@@ -86,6 +85,5 @@ fn entries(@builtin(local_invocation_index) thread: u32) {
     counts[SORTED_ENTRIES] = sorted;
     set_arguments(EMIT, select(0u, groups, fits));
     set_arguments(ENTRY_SORT, divide_up(sorted, 256u * region.sort_keys_per_thread));
-    set_arguments(RANGES, select(0u, divide_up(sorted + 1u, 256u), fits));
     set_arguments(RASTERIZE, select(0u, region.tiles.x * region.tiles.y, fits));
 }

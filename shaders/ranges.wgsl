@@ -2,8 +2,8 @@
 //
 // Needs: common/dispatch, common/counters, common/region.
 //
-// One thread per entry, and one past the last: where the tile changes, the starts of all tiles
-// after the previous entry's, up to this one's, are here. Every start is written exactly once.
+// One thread per tile, and one past the last: the first entry whose tile is not below this one, by
+// bisection.
 
 @group(0) @binding(0) var<uniform> region: Region;
 @group(0) @binding(1) var<storage, read> counts: array<u32>;
@@ -17,20 +17,19 @@ fn ranges(
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) thread: u32,
 ) {
-    let i = flat_group(group, groups) * 256u + thread;
-    let entries = counts[SORTED_ENTRIES];
-    if (i > entries) {
+    let tile = flat_group(group, groups) * 256u + thread;
+    if (tile > region.tiles.x * region.tiles.y) {
         return;
     }
     var first = 0u;
-    if (i > 0u) {
-        first = entry_tiles[i - 1u] + 1u;
+    var end = counts[SORTED_ENTRIES];
+    while (first < end) {
+        let middle = first + (end - first) / 2u;
+        if (entry_tiles[middle] < tile) {
+            first = middle + 1u;
+        } else {
+            end = middle;
+        }
     }
-    var last = region.tiles.x * region.tiles.y;
-    if (i < entries) {
-        last = entry_tiles[i];
-    }
-    for (var tile = first; tile <= last; tile++) {
-        tile_starts[tile] = i;
-    }
+    tile_starts[tile] = first;
 }

@@ -3,8 +3,8 @@
 // Needs: common/dispatch, common/region.
 //
 // One workgroup per tile, one thread per pixel. The workgroup fetches its splats 256 at a time;
-// each pixel blends them in drawing order until a blend would leave T ≤ 10⁻⁴, and the workgroup
-// ends when all its pixels have.
+// each pixel blends them in drawing order, four to a turn of the loop, until a blend would leave
+// T ≤ 10⁻⁴, and the workgroup ends when all its pixels have.
 
 @group(0) @binding(0) var<uniform> region: Region;
 @group(0) @binding(1) var<storage, read> tile_starts: array<u32>;
@@ -38,6 +38,58 @@ var<workgroup> batch_splats: array<u32, 256>;
 /// Whether any pixel is unfinished, of even and of odd batches.
 var<workgroup> open_pixels: array<atomic<u32>, 2>;
 
+/// What has been accumulated in one pixel.
+struct Pixel {
+    /// T; 0 once a blend would have left too little, after which nothing has weight.
+    transmittance: f32,
+    color: vec3<f32>,
+    weight: f32,
+    weighted_depth: f32,
+    median_depth: u32,
+    top_weight: f32,
+    top: u32,
+    top_label: u32,
+}
+
+/// Blends splat `i` of the batch.
+fn blend(pixel: ptr<function, Pixel>, i: u32, point: vec2<f32>) {
+    let centre = batch_centres[i];
+    let extent = batch_extents[i];
+    let d = point - centre.xy;
+    let v1 = centre.z * d.x + centre.w * d.y;
+    let v2 = extent.x * d.y;
+    let power = v1 * v1 + v2 * v2;
+    // α ≥ 1/255, decided on the power: the same condition with less rounding.
+    if (!(power <= extent.y + LOG2_255)) {
+        return;
+    }
+    let before = (*pixel).transmittance;
+    let alpha = min(exp2(extent.y - power), ALPHA_MAX);
+    let full = alpha * before;
+    let after = before - full;
+    if (!(after > TRANSMITTANCE_MIN)) {
+        (*pixel).transmittance = 0.0;
+        return;
+    }
+    let color = batch_colors[i];
+    (*pixel).color += full * color.xyz;
+    (*pixel).weight += full;
+    if (DEPTH) {
+        (*pixel).weighted_depth += full * extent.z;
+        if (before > 0.5 && after <= 0.5) {
+            (*pixel).median_depth = bitcast<u32>(extent.z);
+        }
+    }
+    if (TOP_CONTRIBUTOR) {
+        if (full > (*pixel).top_weight) {
+            (*pixel).top_weight = full;
+            (*pixel).top = batch_splats[i];
+            (*pixel).top_label = bitcast<u32>(color.w);
+        }
+    }
+    (*pixel).transmittance = after;
+}
+
 @compute @workgroup_size(256)
 fn rasterize(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -59,16 +111,8 @@ fn rasterize(
         end = tile_starts[tile + 1u];
     }
 
-    // T; 0 once a blend would have left too little, after which nothing has weight.
-    var transmittance = select(0.0, 1.0, inside);
-    var color = vec3<f32>(0.0);
-    var weight = 0.0;
-    var weighted_depth = 0.0;
-    var median_depth = NAN_BITS;
-    var top_weight = 0.0;
-    var top = NO_SPLAT;
-    var top_label = 0u;
-
+    var state = Pixel(
+        select(0.0, 1.0, inside), vec3<f32>(0.0), 0.0, 0.0, NAN_BITS, 0.0, NO_SPLAT, 0u);
     if (thread < 2u) {
         atomicStore(&open_pixels[thread], 0u);
     }
@@ -85,8 +129,12 @@ fn rasterize(
             if (TOP_CONTRIBUTOR) {
                 batch_splats[thread] = splat;
             }
+        } else {
+            // Seen nowhere.
+            batch_centres[thread] = vec4<f32>(0.0);
+            batch_extents[thread] = vec4<f32>(0.0, -1e3, 0.0, 0.0);
         }
-        if (transmittance > 0.0) {
+        if (state.transmittance > 0.0) {
             atomicOr(&open_pixels[parity], 1u);
         }
         workgroupBarrier();
@@ -99,55 +147,25 @@ fn rasterize(
             atomicStore(&open_pixels[parity], 0u);
         }
         let size = min(256u, end - batch);
-        for (var i = 0u; i < size && transmittance > 0.0; i++) {
-            let centre = batch_centres[i];
-            let extent = batch_extents[i];
-            let d = point - centre.xy;
-            let v1 = centre.z * d.x + centre.w * d.y;
-            let v2 = extent.x * d.y;
-            let power = v1 * v1 + v2 * v2;
-            // α ≥ 1/255, decided on the power: the same condition with less rounding.
-            if (!(power <= extent.y + LOG2_255)) {
-                continue;
-            }
-            let alpha = min(exp2(extent.y - power), ALPHA_MAX);
-            let full = alpha * transmittance;
-            let after = transmittance - full;
-            if (!(after > TRANSMITTANCE_MIN)) {
-                transmittance = 0.0;
-                break;
-            }
-            let splat_color = batch_colors[i];
-            color += full * splat_color.xyz;
-            weight += full;
-            if (DEPTH) {
-                weighted_depth += full * extent.z;
-                if (transmittance > 0.5 && after <= 0.5) {
-                    median_depth = bitcast<u32>(extent.z);
-                }
-            }
-            if (TOP_CONTRIBUTOR) {
-                if (full > top_weight) {
-                    top_weight = full;
-                    top = batch_splats[i];
-                    top_label = bitcast<u32>(splat_color.w);
-                }
-            }
-            transmittance = after;
+        for (var i = 0u; i < size && state.transmittance > 0.0; i += 4u) {
+            blend(&state, i, point);
+            blend(&state, i + 1u, point);
+            blend(&state, i + 2u, point);
+            blend(&state, i + 3u, point);
         }
     }
 
     if (inside) {
         let at = pixel - region.output_origin;
         let index = at.y * region.output_stride + at.x;
-        image[index] = vec4<f32>(color, min(weight, MAX_IMAGE_ALPHA));
+        image[index] = vec4<f32>(state.color, min(state.weight, MAX_IMAGE_ALPHA));
         if (DEPTH || TOP_CONTRIBUTOR) {
             var expected = NAN_BITS;
-            if (weight > 0.0) {
+            if (state.weight > 0.0) {
                 // A quotient of finite sums, which rounding must not carry past the largest float.
-                expected = bitcast<u32>(min(weighted_depth / weight, MAX_FLOAT));
+                expected = bitcast<u32>(min(state.weighted_depth / state.weight, MAX_FLOAT));
             }
-            layers[index] = vec4<u32>(expected, median_depth, top, top_label);
+            layers[index] = vec4<u32>(expected, state.median_depth, state.top, state.top_label);
         }
     }
 }

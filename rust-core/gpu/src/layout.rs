@@ -124,9 +124,8 @@ pub(crate) mod argument {
     pub(crate) const BIN: u64 = 1;
     pub(crate) const EMIT: u64 = 2;
     pub(crate) const ENTRY_SORT: u64 = 3;
-    pub(crate) const RANGES: u64 = 4;
-    pub(crate) const RASTERIZE: u64 = 5;
-    pub(crate) const NETWORK: u64 = 6;
+    pub(crate) const RASTERIZE: u64 = 4;
+    pub(crate) const NETWORK: u64 = 5;
     /// Bytes from one slot to the next.
     pub(crate) const STRIDE: u64 = 16;
     /// Bytes of the buffer.
@@ -261,7 +260,6 @@ mod tests {
             ("BIN", argument::BIN),
             ("EMIT", argument::EMIT),
             ("ENTRY_SORT", argument::ENTRY_SORT),
-            ("RANGES", argument::RANGES),
             ("RASTERIZE", argument::RASTERIZE),
             ("NETWORK", argument::NETWORK),
         ] {

@@ -473,7 +473,7 @@ impl Target {
                 }
                 pass.set_pipeline(&kernels.ranges);
                 pass.set_bind_group(0, &bound.ranges[sorted], &offset);
-                dispatch(&mut pass, order.groups(argument::RANGES));
+                dispatch(&mut pass, Groups::Direct((rect.count() + 1).div_ceil(256)));
             }
             let mut pass = begin(encoder, Stage::Rasterize, timestamps);
             let pipeline = if layers { &kernels.rasterize_layers } else { &kernels.rasterize };

@@ -11,7 +11,8 @@ use crate::shaders::{self, Shader};
 /// Metal Shading Language 3.0 of all entry points, with the default values of overridable constants.
 fn translate(shader: Shader) -> String {
     let module = naga::front::wgsl::parse_str(&shader.source()).unwrap();
-    let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module).unwrap();
+    let info =
+        Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module).unwrap();
     let constants = naga::back::PipelineConstants::default();
     let (module, info) =
         naga::back::pipeline_constants::process_overrides(&module, &info, None, &constants)
