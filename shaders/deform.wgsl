@@ -25,11 +25,11 @@
 /// Width of the hidden layers, padded with zeros to a multiple of 64.
 override WIDTH: u32 = 256u;
 /// Splats per workgroup.
-override SPLATS: u32 = 32u;
+override SPLATS: u32 = 16u;
 /// WIDTH / 4 · SPLATS / 16.
-override THREADS: u32 = 128u;
+override THREADS: u32 = 64u;
 /// max(WIDTH, input rows) · SPLATS / 4.
-override HIDDEN_VECTORS: u32 = 2048u;
+override HIDDEN_VECTORS: u32 = 1024u;
 
 var<workgroup> hidden: array<vec4<f32>, HIDDEN_VECTORS>;
 
@@ -82,17 +82,27 @@ fn encode(first: u32, thread: u32) {
 fn accumulate(block: ptr<function, Block>, first_row: u32, rows: u32, features: u32, quad: u32) {
     var weight_at = first_row * (WIDTH / 4u) + features;
     var hidden_at = quad;
+    // Weights of the next four rows are on their way while these are used.
+    var w0 = weights[weight_at];
+    var w1 = weights[weight_at + WIDTH / 4u];
+    var w2 = weights[weight_at + 2u * (WIDTH / 4u)];
+    var w3 = weights[weight_at + 3u * (WIDTH / 4u)];
     for (var row = 0u; row < rows; row += 4u) {
-        let w0 = weights[weight_at];
-        let w1 = weights[weight_at + WIDTH / 4u];
-        let w2 = weights[weight_at + 2u * (WIDTH / 4u)];
-        let w3 = weights[weight_at + 3u * (WIDTH / 4u)];
+        // Behind the last row come the next layer's, or the heads'.
+        weight_at += WIDTH;
+        let next0 = weights[weight_at];
+        let next1 = weights[weight_at + WIDTH / 4u];
+        let next2 = weights[weight_at + 2u * (WIDTH / 4u)];
+        let next3 = weights[weight_at + 3u * (WIDTH / 4u)];
         multiply_add(block, w0, hidden_at);
         multiply_add(block, w1, hidden_at + SPLATS / 4u);
         multiply_add(block, w2, hidden_at + 2u * (SPLATS / 4u));
         multiply_add(block, w3, hidden_at + 3u * (SPLATS / 4u));
         hidden_at += SPLATS;
-        weight_at += WIDTH;
+        w0 = next0;
+        w1 = next1;
+        w2 = next2;
+        w3 = next3;
     }
 }
 

@@ -49,7 +49,7 @@ struct Waves {
 typedef Pose type_9[1];
 typedef metal::float4 type_10[1];
 struct type_11 {
-    metal::float4 inner[2048];
+    metal::float4 inner[1024];
 };
 struct Block {
     metal::float4 s0_;
@@ -83,9 +83,9 @@ constant float MIN_ROTATION_NORM = 0.000001;
 constant float MIN_DEFORMED_SCALE = 0.000001;
 constant float MAX_SCALE = 1000000000000.0;
 constant uint WIDTH = 256u;
-constant uint SPLATS = 32u;
-constant uint THREADS = 128u;
-constant uint HIDDEN_VECTORS = 2048u;
+constant uint SPLATS = 16u;
+constant uint THREADS = 64u;
+constant uint HIDDEN_VECTORS = 1024u;
 
 uint flat_group(
     metal::uint3 group_1,
@@ -383,22 +383,22 @@ void encode(
         }
         loop_init = false;
         uint _e12 = task;
-        if (_e12 < (8u * waves)) {
+        if (_e12 < (4u * waves)) {
         } else {
             break;
         }
         {
             uint _e15 = task;
-            uint quad_2 = naga_mod(_e15, 8u);
+            uint quad_2 = naga_mod(_e15, 4u);
             uint _e17 = task;
-            uint axis_3 = naga_mod(naga_div(_e17, 8u), 3u);
+            uint axis_3 = naga_mod(naga_div(_e17, 4u), 3u);
             uint _e21 = task;
-            uint octave_1 = naga_div(_e21, 24u);
+            uint octave_1 = naga_div(_e21, 12u);
             metal::float4 _e28 = four_coordinates(first_1 + (4u * quad_2), axis_3, deformation, counts, dynamic_splats, canonical_poses, _buffer_sizes);
             Waves _e29 = waves_of(_e28, axis_3, octave_1, deformation);
             uint row_3 = (3u + (6u * octave_1)) + axis_3;
-            hidden.inner[(row_3 * 8u) + quad_2] = _e29.sine;
-            hidden.inner[((row_3 + 3u) * 8u) + quad_2] = _e29.cosine;
+            hidden.inner[(row_3 * 4u) + quad_2] = _e29.sine;
+            hidden.inner[((row_3 + 3u) * 4u) + quad_2] = _e29.cosine;
         }
     }
     task_1 = thread_1;
@@ -410,22 +410,22 @@ void encode(
         }
         loop_init_1 = false;
         uint _e51 = task_1;
-        if (_e51 < 24u) {
+        if (_e51 < 12u) {
         } else {
             break;
         }
         {
             uint _e55 = task_1;
-            uint quad_3 = naga_mod(_e55, 8u);
+            uint quad_3 = naga_mod(_e55, 4u);
             uint _e57 = task_1;
-            uint axis_4 = naga_div(_e57, 8u);
+            uint axis_4 = naga_div(_e57, 4u);
             metal::float4 _e66 = four_coordinates(first_1 + (4u * quad_3), axis_4, deformation, counts, dynamic_splats, canonical_poses, _buffer_sizes);
             float _e70 = deformation.origin[axis_4];
-            hidden.inner[(axis_4 * 8u) + quad_3] = _e66 + metal::float4(_e70);
+            hidden.inner[(axis_4 * 4u) + quad_3] = _e66 + metal::float4(_e70);
         }
     }
     uint _e80 = deformation.octaves;
-    uint used = (3u + (6u * _e80)) * 8u;
+    uint used = (3u + (6u * _e80)) * 4u;
     at = used + thread_1;
     bool loop_init_2 = true;
     while(true) {
@@ -436,7 +436,7 @@ void encode(
         loop_init_2 = false;
         uint _e86 = at;
         uint _e89 = deformation.input_rows;
-        if (_e86 < (_e89 * 8u)) {
+        if (_e86 < (_e89 * 4u)) {
         } else {
             break;
         }
@@ -505,42 +505,66 @@ void accumulate(
 ) {
     uint weight_at = {};
     uint hidden_at = {};
+    metal::float4 w0_ = {};
+    metal::float4 w1_ = {};
+    metal::float4 w2_ = {};
+    metal::float4 w3_ = {};
     uint row_1 = 0u;
     weight_at = (first_row * 64u) + features;
     hidden_at = quad_;
+    uint _e14 = weight_at;
+    metal::float4 _e16 = weights[_e14];
+    w0_ = _e16;
+    uint _e19 = weight_at;
+    metal::float4 _e26 = weights[_e19 + 64u];
+    w1_ = _e26;
+    uint _e29 = weight_at;
+    metal::float4 _e38 = weights[_e29 + 128u];
+    w2_ = _e38;
+    uint _e41 = weight_at;
+    metal::float4 _e50 = weights[_e41 + 192u];
+    w3_ = _e50;
     bool loop_init_3 = true;
     while(true) {
         if (!loop_init_3) {
-            uint _e81 = row_1;
-            row_1 = _e81 + 4u;
+            uint _e124 = row_1;
+            row_1 = _e124 + 4u;
         }
         loop_init_3 = false;
-        uint _e15 = row_1;
-        if (_e15 < rows) {
+        uint _e54 = row_1;
+        if (_e54 < rows) {
         } else {
             break;
         }
         {
-            uint _e18 = weight_at;
-            metal::float4 w0_ = weights[_e18];
-            uint _e22 = weight_at;
-            metal::float4 w1_ = weights[_e22 + 64u];
-            uint _e31 = weight_at;
-            metal::float4 w2_ = weights[_e31 + 128u];
-            uint _e42 = weight_at;
-            metal::float4 w3_ = weights[_e42 + 192u];
-            uint _e52 = hidden_at;
-            multiply_add(block_2, w0_, _e52, hidden);
-            uint _e53 = hidden_at;
-            multiply_add(block_2, w1_, _e53 + 8u, hidden);
-            uint _e59 = hidden_at;
-            multiply_add(block_2, w2_, _e59 + 16u, hidden);
-            uint _e67 = hidden_at;
-            multiply_add(block_2, w3_, _e67 + 24u, hidden);
-            uint _e75 = hidden_at;
-            hidden_at = _e75 + SPLATS;
-            uint _e78 = weight_at;
-            weight_at = _e78 + WIDTH;
+            uint _e56 = weight_at;
+            weight_at = _e56 + WIDTH;
+            uint _e60 = weight_at;
+            metal::float4 next0_ = weights[_e60];
+            uint _e64 = weight_at;
+            metal::float4 next1_ = weights[_e64 + 64u];
+            uint _e73 = weight_at;
+            metal::float4 next2_ = weights[_e73 + 128u];
+            uint _e84 = weight_at;
+            metal::float4 next3_ = weights[_e84 + 192u];
+            metal::float4 _e94 = w0_;
+            uint _e95 = hidden_at;
+            multiply_add(block_2, _e94, _e95, hidden);
+            metal::float4 _e96 = w1_;
+            uint _e97 = hidden_at;
+            multiply_add(block_2, _e96, _e97 + 4u, hidden);
+            metal::float4 _e103 = w2_;
+            uint _e104 = hidden_at;
+            multiply_add(block_2, _e103, _e104 + 8u, hidden);
+            metal::float4 _e112 = w3_;
+            uint _e113 = hidden_at;
+            multiply_add(block_2, _e112, _e113 + 12u, hidden);
+            uint _e121 = hidden_at;
+            hidden_at = _e121 + SPLATS;
+            w0_ = next0_;
+            w1_ = next1_;
+            w2_ = next2_;
+            w3_ = next3_;
         }
     }
     return;
@@ -557,9 +581,9 @@ void store_quad(
     metal::float4 zero = metal::float4(0.0);
     metal::float4x4 rows_1 = metal::transpose(metal::float4x4(metal::max(a_1, zero), metal::max(b_1, zero), metal::max(c_1, zero), metal::max(d_1, zero)));
     hidden.inner[at_2] = rows_1[0];
-    hidden.inner[at_2 + 8u] = rows_1[1];
-    hidden.inner[at_2 + 16u] = rows_1[2];
-    hidden.inner[at_2 + 24u] = rows_1[3];
+    hidden.inner[at_2 + 4u] = rows_1[1];
+    hidden.inner[at_2 + 8u] = rows_1[2];
+    hidden.inner[at_2 + 12u] = rows_1[3];
     return;
 }
 
@@ -569,7 +593,7 @@ void store(
     uint quad_1,
     threadgroup type_11& hidden
 ) {
-    uint at_4 = ((4u * features_1) * 8u) + quad_1;
+    uint at_4 = ((4u * features_1) * 4u) + quad_1;
     store_quad(at_4, block_3.s0_, block_3.s1_, block_3.s2_, block_3.s3_, hidden);
     store_quad(at_4 + 1u, block_3.s4_, block_3.s5_, block_3.s6_, block_3.s7_, hidden);
     store_quad(at_4 + 2u, block_3.s8_, block_3.s9_, block_3.s10_, block_3.s11_, hidden);
@@ -609,7 +633,7 @@ metal::float4 head(
         }
         {
             uint _e22 = row_2;
-            float feature = hidden.inner[(_e22 * 8u) + naga_div(splat, 4u)][naga_mod(splat, 4u)];
+            float feature = hidden.inner[(_e22 * 4u) + naga_div(splat, 4u)][naga_mod(splat, 4u)];
             metal::float4 _e36 = sum_1;
             uint _e39 = row_2;
             metal::float4 _e44 = weights[(head_weights + (4u * _e39)) + quarter];
@@ -625,7 +649,7 @@ void store_head(
     metal::float4 outputs,
     threadgroup type_11& hidden
 ) {
-    if (task_3 < 128u) {
+    if (task_3 < 64u) {
         hidden.inner[task_3] = outputs;
         return;
     } else {
@@ -635,7 +659,7 @@ void store_head(
 
 struct deformInput {
 };
-[[max_total_threads_per_threadgroup(128)]] kernel void deform(
+[[max_total_threads_per_threadgroup(64)]] kernel void deform(
   metal::uint3 group [[threadgroup_position_in_grid]]
 , metal::uint3 groups [[threadgroups_per_grid]]
 , uint thread_ [[thread_index_in_threadgroup]]
@@ -709,13 +733,13 @@ struct deformInput {
     uint head_biases_1 = _e76 * 64u;
     metal::float4 _e82 = head(thread_, head_weights_1, head_biases_1, weights, biases, hidden, _buffer_sizes);
     metal::float4 _e85 = head(thread_ + THREADS, head_weights_1, head_biases_1, weights, biases, hidden, _buffer_sizes);
-    metal::float4 _e91 = head(thread_ + 256u, head_weights_1, head_biases_1, weights, biases, hidden, _buffer_sizes);
-    metal::float4 _e97 = head(thread_ + 384u, head_weights_1, head_biases_1, weights, biases, hidden, _buffer_sizes);
+    metal::float4 _e91 = head(thread_ + 128u, head_weights_1, head_biases_1, weights, biases, hidden, _buffer_sizes);
+    metal::float4 _e97 = head(thread_ + 192u, head_weights_1, head_biases_1, weights, biases, hidden, _buffer_sizes);
     metal::threadgroup_barrier(metal::mem_flags::mem_threadgroup);
     store_head(thread_, _e82, hidden);
     store_head(thread_ + THREADS, _e85, hidden);
-    store_head(thread_ + 256u, _e91, hidden);
-    store_head(thread_ + 384u, _e97, hidden);
+    store_head(thread_ + 128u, _e91, hidden);
+    store_head(thread_ + 192u, _e97, hidden);
     metal::threadgroup_barrier(metal::mem_flags::mem_threadgroup);
     i = thread_;
     bool loop_init_6 = true;
@@ -747,9 +771,9 @@ struct deformInput {
             uint _e136 = i;
             metal::float4 _e139 = hidden.inner[SPLATS + _e136];
             uint _e145 = i;
-            metal::float4 _e148 = hidden.inner[64u + _e145];
+            metal::float4 _e148 = hidden.inner[32u + _e145];
             uint _e154 = i;
-            metal::float4 _e157 = hidden.inner[96u + _e154];
+            metal::float4 _e157 = hidden.inner[48u + _e154];
             Pose _e158 = apply_outputs(_e129, _e133, _e139, _e148, _e157, deformation);
             poses[_e124] = _e158;
         }
