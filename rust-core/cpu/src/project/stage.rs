@@ -193,6 +193,10 @@ impl Input<'_> {
         }
         let depth = view.depth(position);
         splat.depth = depth as f32;
+        // A depth that single precision cannot hold has no place in the order.
+        if !splat.depth.is_finite() {
+            return None;
+        }
         splat.depth_low = (depth - f64::from(splat.depth)) as f32;
         splat.index = i as u32;
         splat.color = self.color(i, offset);

@@ -84,11 +84,12 @@ impl Projection {
     }
 
     /// Projects a splat; `None` when it is nearer than the near plane, too transparent to reach
-    /// 1/255 anywhere, or not made of finite numbers.
+    /// 1/255 anywhere, not made of finite numbers, or farther than single precision can say.
     #[must_use]
     pub fn project(&self, splat: &PosedSplat) -> Option<ProjectedSplat> {
         let p = self.rotation * (splat.position - self.centre);
-        if !(p.z > NEAR_PLANE && p.is_finite() && splat.opacity >= ALPHA_MIN) {
+        let far = f64::from(f32::MAX);
+        if !(p.z > NEAR_PLANE && p.z <= far && p.is_finite() && splat.opacity >= ALPHA_MIN) {
             return None;
         }
         let (fx, fy) = (self.camera.fx, self.camera.fy);

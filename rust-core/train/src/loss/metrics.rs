@@ -80,7 +80,13 @@ fn compare(
                 *color = store(color.clamp(0.0, 1.0));
             }
             let ssim = similarity(&x, &y, target.width(), target.height()).value;
-            let squares = (0..x.len()).map(|i| weights[i] * (x[i] - y[i]).powi(2)).sum::<f64>();
+            // In x the target already stands in for what does not count; the error of a pixel that
+            // counts in part is that of the pixel itself.
+            let squares = (0..x.len()).map(|i| {
+                let over = render[i][channel] + (1.0 - render[i][3]) * background[channel];
+                weights[i] * (store(over.clamp(0.0, 1.0)) - y[i]).powi(2)
+            });
+            let squares = squares.sum::<f64>();
             (squares, (0..x.len()).map(|i| weights[i] * ssim[i]).sum())
         })
         .collect();
