@@ -4,6 +4,7 @@ use clap::Args;
 use serde::Serialize;
 use trapeze_scene::{MotionMeasure, Scene};
 
+use super::gpu_check;
 use crate::error::CliError;
 use crate::output::print_json;
 use crate::scene_input::SceneArguments;
@@ -11,7 +12,11 @@ use crate::scene_input::SceneArguments;
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    scene: SceneArguments,
+    scene: Option<SceneArguments>,
+    /// Tell what the GPU is, and check its kernels against the f64 reference, on the scene or on a
+    /// built-in one; always JSON.
+    #[arg(long)]
+    gpu: bool,
     /// Print JSON.
     #[arg(long)]
     json: bool,
@@ -73,7 +78,14 @@ struct MotionInfo {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), CliError> {
-    let info = describe(&arguments.scene.load()?);
+    let scene = arguments.scene.as_ref().map(SceneArguments::load).transpose()?;
+    if arguments.gpu {
+        return print_json(&gpu_check::check(scene)?);
+    }
+    let Some(scene) = scene else {
+        return Err(CliError::argument("SCENE", "a splat file or a scene folder", "nothing"));
+    };
+    let info = describe(&scene);
     if arguments.json { print_json(&info) } else { print_text(&info) }
 }
 

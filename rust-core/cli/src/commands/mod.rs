@@ -5,6 +5,7 @@ mod bench_gpu;
 mod convert;
 mod demo;
 mod eval;
+mod gpu_check;
 mod info;
 mod motion;
 mod render;
