@@ -1,18 +1,21 @@
 //! `trapeze info`.
 
+use std::path::PathBuf;
+
 use clap::Args;
 use serde::Serialize;
+use trapeze_formats::load_scene;
 use trapeze_scene::{MotionMeasure, Scene};
 
 use super::gpu_check;
 use crate::error::CliError;
 use crate::output::print_json;
-use crate::scene_input::SceneArguments;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    #[command(flatten)]
-    scene: Option<SceneArguments>,
+    /// A splat file (.ply, .compressed.ply, .splat, .spz, .sog, meta.json) or a scene folder.
+    #[arg(required_unless_present = "gpu")]
+    scene: Option<PathBuf>,
     /// Tell what the GPU is, and check its kernels against the f64 reference, on the scene or on a
     /// built-in one; always JSON.
     #[arg(long)]
@@ -78,7 +81,7 @@ struct MotionInfo {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), CliError> {
-    let scene = arguments.scene.as_ref().map(SceneArguments::load).transpose()?;
+    let scene = arguments.scene.as_deref().map(load_scene).transpose()?;
     if arguments.gpu {
         return print_json(&gpu_check::check(scene)?);
     }
