@@ -65,7 +65,7 @@ mod tests {
 
     #[test]
     fn the_oldest_photographs_make_room_for_new_ones() {
-        let mut targets = ResidentTargets::new(30);
+        let mut targets = ResidentTargets::new(29);
         for view in 0..3 {
             targets.admit(view, target(3)).unwrap();
         }

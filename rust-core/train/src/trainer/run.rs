@@ -8,6 +8,7 @@ use super::health::Fault;
 use super::search::Proposal;
 use super::{Event, Report, TrainError, Trainer};
 use crate::backend::{BackendError, REPORT_LAG, TrainingBackend};
+use crate::config::Background;
 use crate::evaluation::psnr_of;
 use crate::schedule::{DensifyPlan, StepPlan};
 
@@ -78,7 +79,11 @@ impl<B: TrainingBackend> Trainer<B> {
         }
         self.continue_trial(observer)?;
         let is_due = is_last || self.step.is_multiple_of(self.config.checkpoint_interval);
-        if is_due && self.trial.is_none() && self.step != self.anchor.step() {
+        if !is_due || self.trial.is_some() || self.step == self.anchor.step() {
+            return Ok(());
+        }
+        // Doubt is judged on every report, so that a pause, which waits for them, changes nothing.
+        if self.settle(observer)? && (is_last || !self.progress.health.is_doubtful()) {
             self.make_good(observer)?;
         }
         Ok(())
@@ -137,7 +142,9 @@ impl<B: TrainingBackend> Trainer<B> {
     fn take_reports(&mut self, step: u32) -> Result<Result<(), Fault>, TrainError> {
         let epoch = self.views.epoch();
         for report in self.backend.reports(step)? {
-            if let Err(fault) = self.progress.health.take(&report, epoch) {
+            let is_comparable = matches!(self.config.background, Background::Fixed(_));
+            let view = is_comparable.then(|| self.views.at_step(report.step));
+            if let Err(fault) = self.progress.health.take(&report, view, epoch) {
                 return Ok(Err(fault));
             }
             self.figures.loss += report.loss.total;

@@ -50,8 +50,15 @@ fn a_photograph_equal_to_the_render_is_a_place_of_rest() {
     assert_eq!(backend.state().unwrap().splats, before);
 }
 
+/// How a run went: the trainer at its end, roll-backs, and the mean losses that it reported.
+struct Run {
+    result: Result<Trainer<CpuBackend>, TrainError>,
+    rollbacks: u32,
+    losses: Vec<f64>,
+}
+
 /// Trains on the bundled photographs at an eighth of their size with all rates times `factor`.
-fn run_with_rates(factor: f64) -> (Result<Trainer<CpuBackend>, TrainError>, u32) {
+fn run_with_rates(factor: f64) -> Run {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../../assets/sample-dataset/transforms_static.json");
     let options = DatasetOptions { downscale: Some(8), ..DatasetOptions::default() };
@@ -71,27 +78,34 @@ fn run_with_rates(factor: f64) -> (Result<Trainer<CpuBackend>, TrainError>, u32)
     ] {
         *rate *= factor;
     }
-    let mut rollbacks = 0;
-    let mut trainer =
-        Trainer::start(&dataset, config, CpuBackend::default(), TrainerOptions::default()).unwrap();
-    let result = trainer.advance(u32::MAX, &mut |event| {
-        rollbacks += u32::from(matches!(event, Event::RolledBack { .. }));
+    let (mut rollbacks, mut losses) = (0, Vec::new());
+    let options = TrainerOptions { report_interval: 20, ..TrainerOptions::default() };
+    let mut trainer = Trainer::start(&dataset, config, CpuBackend::default(), options).unwrap();
+    let result = trainer.advance(u32::MAX, &mut |event| match event {
+        Event::RolledBack { reason, .. } => {
+            eprintln!("  {reason}");
+            rollbacks += 1;
+        }
+        Event::Report(report) => losses.push(report.loss),
+        _ => {}
     });
-    (result.map(|_| trainer), rollbacks)
+    Run { result: result.map(|_| trainer), rollbacks, losses }
 }
 
 #[test]
 fn exploding_rates_recover_or_stop_with_the_last_good_state() {
     for factor in [1.0, 1e2, 1e4, 1e7] {
-        match run_with_rates(factor) {
-            (Ok(mut trainer), rollbacks) => {
+        let Run { result, rollbacks, losses } = run_with_rates(factor);
+        match result {
+            Ok(mut trainer) => {
                 let scene = trainer.scene().unwrap();
-                eprintln!("rates times {factor:e}: {rollbacks} roll-backs");
+                eprintln!("rates times {factor:e}: {rollbacks} roll-backs, losses {losses:.3?}");
                 assert!(is_finite(&scene.splats), "{factor:e}");
                 assert_eq!(rollbacks > 0, trainer.progress().rate_factor < 1.0);
                 assert!(factor > 1.0 || rollbacks == 0);
+                assert!(losses[losses.len() - 1] < losses[0], "{factor:e}: {losses:?}");
             }
-            (Err(error), _) => {
+            Err(error) => {
                 eprintln!("rates times {factor:e}: {error}");
                 assert!(factor > 1.0 && matches!(error, TrainError::Diverged { .. }), "{error}");
             }
