@@ -178,7 +178,7 @@ mod tests {
     #[test]
     fn an_epoch_far_above_the_best_one_is_a_fault_and_a_single_view_is_not() {
         // The first view's own loss stays what it was.
-        let loss = |step: u32| if step < 35 || step % 10 == 0 { 0.1 } else { 0.5 };
+        let loss = |step: u32| if step < 35 || step.is_multiple_of(10) { 0.1 } else { 0.5 };
         let exploded = (0..60).map(|step| report(step, loss(step), 1));
         assert!(matches!(take_all(exploded), Err(Fault::Rise { .. })));
         take_all((0..60).map(|step| report(step, if step == 35 { 0.9 } else { 0.1 }, 1))).unwrap();
