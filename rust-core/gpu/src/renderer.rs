@@ -58,7 +58,7 @@ pub struct Pick {
 ///
 /// [`render`](Self::render) waits for the image and returns it. [`draw`](Self::draw) is for
 /// playback: it submits a frame and returns; in the steady state it creates nothing and waits for
-/// nothing. What it drew stays on the GPU, for a [`SurfaceTarget`](crate::SurfaceTarget) to show.
+/// nothing. What it drew stays on the GPU.
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Gpu,

@@ -89,8 +89,7 @@ pub fn psnr_of(render: &[[f32; 4]], target: &TargetImage, background: [f32; 3]) 
         let through = 1.0 - f64::from(pixel[3]);
         for c in 0..3 {
             let rendered = f64::from(pixel[c]) + through * background[c];
-            let compared = weight * rendered + (1.0 - weight) * color[c];
-            squares += weight * (compared.clamp(0.0, 1.0) - color[c]).powi(2);
+            squares += weight * (rendered.clamp(0.0, 1.0) - color[c]).powi(2);
         }
         total += 3.0 * weight;
     }

@@ -71,8 +71,8 @@ mod tests {
         }
         targets.admit(3, target(4)).unwrap();
         let held: Vec<u32> = (0..4).filter(|&view| targets.get(view).is_some()).collect();
-        assert_eq!(held, [1, 2, 3]);
-        assert_eq!(targets.bytes, 30);
+        assert_eq!(held, [2, 3]);
+        assert_eq!(targets.bytes, 21);
         targets.admit(2, target(5)).unwrap();
         assert_eq!((targets.bytes, targets.get(2).unwrap().len()), (27, 5));
     }

@@ -8,7 +8,8 @@ use crate::trainer::{Proposal, Trial};
 pub(super) fn searching(steps: u32) -> TrainingConfig {
     let mut config = config(steps);
     config.initial.random_count = 12;
-    config.search = Some(BudgetSearch { growth: 1.0, ..BudgetSearch::default() });
+    // A price that the first doublings of a mosaic are worth.
+    config.search = Some(BudgetSearch { growth: 1.0, least_gain: 0.1, ..BudgetSearch::default() });
     if let Some(densification) = &mut config.densification {
         densification.max_splats = 400;
     }
