@@ -270,7 +270,10 @@ impl Gpu {
     }
 
     /// A buffer of at least `bytes`, zeroed.
-    pub(crate) fn buffer(
+    ///
+    /// # Errors
+    /// [`GpuError::OutOfMemory`] when it is larger than a buffer may be, or than what is left.
+    pub fn buffer(
         &self,
         label: &'static str,
         bytes: u64,
@@ -297,11 +300,10 @@ impl Gpu {
     }
 
     /// A storage buffer of at least `bytes` that can also be copied from and written to.
-    pub(crate) fn storage(
-        &self,
-        label: &'static str,
-        bytes: u64,
-    ) -> Result<wgpu::Buffer, GpuError> {
+    ///
+    /// # Errors
+    /// Those of [`buffer`](Self::buffer).
+    pub fn storage(&self, label: &'static str, bytes: u64) -> Result<wgpu::Buffer, GpuError> {
         let usage = wgpu::BufferUsages::STORAGE
             | wgpu::BufferUsages::COPY_DST
             | wgpu::BufferUsages::COPY_SRC;
@@ -309,26 +311,42 @@ impl Gpu {
     }
 
     /// A storage buffer that holds `data`.
-    pub(crate) fn storage_of<T: bytemuck::NoUninit>(
+    ///
+    /// # Errors
+    /// Those of [`buffer`](Self::buffer), and [`GpuError::Device`] when the device is lost.
+    pub fn storage_of<T: bytemuck::NoUninit>(
         &self,
         label: &'static str,
         data: &[T],
     ) -> Result<wgpu::Buffer, GpuError> {
+        let buffer = self.storage(label, size_of_val(data) as u64)?;
+        self.write(&buffer, data)?;
+        Ok(buffer)
+    }
+
+    /// Writes `data` to the start of a buffer, before anything that is submitted from now on. Large
+    /// data go in pieces, with a wait now and then, so that the staging memory stays small.
+    ///
+    /// # Errors
+    /// [`GpuError::Device`] when the device is lost.
+    pub fn write<T: bytemuck::NoUninit>(
+        &self,
+        buffer: &wgpu::Buffer,
+        data: &[T],
+    ) -> Result<(), GpuError> {
         let bytes: &[u8] = bytemuck::cast_slice(data);
-        let buffer = self.storage(label, bytes.len() as u64)?;
-        // In pieces, so that the staging memory stays small.
         for (i, piece) in bytes.chunks(UPLOAD_PIECE).enumerate() {
-            self.queue().write_buffer(&buffer, (i * UPLOAD_PIECE) as u64, piece);
+            self.queue().write_buffer(buffer, (i * UPLOAD_PIECE) as u64, piece);
             if i % 8 == 7 {
                 self.queue().submit([]);
                 self.wait()?;
             }
         }
-        Ok(buffer)
+        Ok(())
     }
 
     /// A uniform buffer that holds `data` and can be written to.
-    pub(crate) fn uniform_of(&self, label: &'static str, data: &[u8]) -> wgpu::Buffer {
+    pub fn uniform_of(&self, label: &'static str, data: &[u8]) -> wgpu::Buffer {
         self.inner.created.buffers.fetch_add(1, Ordering::Relaxed);
         self.device().create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some(label),

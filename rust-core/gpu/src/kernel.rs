@@ -4,7 +4,7 @@ use crate::Gpu;
 
 /// What a binding is, in the order of binding numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Binding {
+pub enum Binding {
     /// A uniform block.
     Uniform,
     /// A uniform block at an offset that is given with each dispatch.
@@ -17,7 +17,7 @@ pub(crate) enum Binding {
 
 /// The bindings that the entry points of one shader share.
 #[derive(Debug)]
-pub(crate) struct Interface {
+pub struct Interface {
     label: &'static str,
     module: wgpu::ShaderModule,
     bindings: Vec<Binding>,
@@ -26,7 +26,49 @@ pub(crate) struct Interface {
 }
 
 impl Interface {
+    /// Compiles a shader of this crate, without run-time checks.
     pub(crate) fn new(gpu: &Gpu, label: &'static str, source: &str, bindings: &[Binding]) -> Self {
+        Self::with_module(gpu, label, shader_module(gpu, label, source), bindings)
+    }
+
+    /// Compiles any shader whose bindings, all in group 0, are `bindings` in order. An index beyond
+    /// a buffer's end reads or writes some other element, and a loop without an end is ended.
+    ///
+    /// # Panics
+    /// When the source is no valid WGSL: the sources are part of the program.
+    #[must_use]
+    pub fn checked(gpu: &Gpu, label: &'static str, source: &str, bindings: &[Binding]) -> Self {
+        let module = gpu.device().create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(label),
+            source: wgpu::ShaderSource::Wgsl(source.into()),
+        });
+        Self::with_module(gpu, label, module, bindings)
+    }
+
+    /// [`checked`](Self::checked) without the checks, which cost some kernels an eighth of their time.
+    ///
+    /// # Safety
+    /// Every index that an entry point forms, for any contents of the buffers that it can be given,
+    /// is below the length of what it indexes, and every loop ends.
+    ///
+    /// # Panics
+    /// When the source is no valid WGSL.
+    #[must_use]
+    pub unsafe fn trusted(
+        gpu: &Gpu,
+        label: &'static str,
+        source: &str,
+        bindings: &[Binding],
+    ) -> Self {
+        Self::new(gpu, label, source, bindings)
+    }
+
+    fn with_module(
+        gpu: &Gpu,
+        label: &'static str,
+        module: wgpu::ShaderModule,
+        bindings: &[Binding],
+    ) -> Self {
         let device = gpu.device();
         let entries: Vec<wgpu::BindGroupLayoutEntry> = (0u32..)
             .zip(bindings)
@@ -54,17 +96,13 @@ impl Interface {
             bind_group_layouts: &[Some(&bind_group_layout)],
             immediate_size: 0,
         });
-        Self {
-            label,
-            module: shader_module(gpu, label, source),
-            bindings: bindings.to_vec(),
-            bind_group_layout,
-            pipeline_layout,
-        }
+        Self { label, module, bindings: bindings.to_vec(), bind_group_layout, pipeline_layout }
     }
 
-    /// The pipeline of an entry point, with values for its overridable constants.
-    pub(crate) fn pipeline(
+    /// The pipeline of an entry point, with values for its overridable constants. Workgroup memory
+    /// is not cleared first.
+    #[must_use]
+    pub fn pipeline(
         &self,
         gpu: &Gpu,
         entry_point: &str,
@@ -86,7 +124,11 @@ impl Interface {
     }
 
     /// Binds buffers, in the order of the bindings.
-    pub(crate) fn bind(&self, gpu: &Gpu, buffers: &[wgpu::BufferBinding<'_>]) -> wgpu::BindGroup {
+    ///
+    /// # Panics
+    /// In debug builds, when there are more or fewer buffers than bindings.
+    #[must_use]
+    pub fn bind(&self, gpu: &Gpu, buffers: &[wgpu::BufferBinding<'_>]) -> wgpu::BindGroup {
         debug_assert_eq!(buffers.len(), self.bindings.len(), "{}", self.label);
         gpu.count_bind_group();
         let entries: Vec<wgpu::BindGroupEntry<'_>> = (0u32..)
@@ -114,7 +156,8 @@ fn shader_module(gpu: &Gpu, label: &'static str, source: &str) -> wgpu::ShaderMo
         source: wgpu::ShaderSource::Wgsl(source.into()),
     };
     let checks = wgpu::ShaderRuntimeChecks::unchecked();
-    // SAFETY: the sources are part of this crate. Each indexes its buffers with numbers below the
+    // SAFETY: the sources are part of this crate, or `Interface::trusted` was promised the same of
+    // them. Each indexes its buffers with numbers below the
     // counts that the host made the buffers for, or below counts that an earlier kernel has checked
     // against the buffers' capacities, and each loop ends at such a count. The tests run all of
     // them, at the sizes where indices end.
@@ -122,12 +165,14 @@ fn shader_module(gpu: &Gpu, label: &'static str, source: &str) -> wgpu::ShaderMo
 }
 
 /// A whole buffer, as a binding.
-pub(crate) fn whole(buffer: &wgpu::Buffer) -> wgpu::BufferBinding<'_> {
+#[must_use]
+pub fn whole(buffer: &wgpu::Buffer) -> wgpu::BufferBinding<'_> {
     buffer.as_entire_buffer_binding()
 }
 
 /// A part of a buffer, as a binding.
-pub(crate) fn part(buffer: &wgpu::Buffer, offset: u64, bytes: u64) -> wgpu::BufferBinding<'_> {
+#[must_use]
+pub fn part(buffer: &wgpu::Buffer, offset: u64, bytes: u64) -> wgpu::BufferBinding<'_> {
     wgpu::BufferBinding { buffer, offset, size: wgpu::BufferSize::new(bytes) }
 }
 

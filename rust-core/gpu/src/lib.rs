@@ -2,13 +2,16 @@
 //! on Metal and Vulkan from one set of sources.
 
 mod activate;
+pub mod compute;
 mod context;
 mod deform;
 mod device_report;
 mod error;
 mod kernel;
 mod kernels;
+mod late_reader;
 mod layout;
+mod parameters;
 mod project;
 mod readback;
 mod region;
@@ -25,6 +28,7 @@ pub use context::{Created, DeviceProfile, Gpu, GpuOptions};
 pub use deform::NetworkPrecision;
 pub use device_report::DeviceReport;
 pub use error::GpuError;
+pub use parameters::{ParameterArray, ParameterBuffers};
 pub use renderer::{Pick, Renderer, RendererOptions};
 pub use timing::StageTimes;
 

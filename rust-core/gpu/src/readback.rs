@@ -11,8 +11,12 @@ use crate::{Gpu, GpuError};
 /// Most bytes that are read in one piece.
 const PIECE: u64 = 64 << 20;
 
-/// Copies the first `count` pixels of a buffer to the host, and waits for them.
-pub(crate) fn pixels<T: AnyBitPattern>(
+/// Copies the first `count` elements of a buffer to the host, and waits for them.
+///
+/// # Errors
+/// [`GpuError::Device`] when the device is lost, [`GpuError::OutOfMemory`] when there is no room for
+/// a staging buffer.
+pub fn read<T: AnyBitPattern>(
     gpu: &Gpu,
     buffer: &wgpu::Buffer,
     count: u64,
@@ -84,7 +88,7 @@ impl Counts {
 
 /// Reads the counts of the last frame, and waits for them.
 pub(crate) fn counts(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Counts, GpuError> {
-    Ok(Counts::from_words(&pixels::<u32>(gpu, buffer, counter::COUNT as u64)?))
+    Ok(Counts::from_words(&read::<u32>(gpu, buffer, counter::COUNT as u64)?))
 }
 
 const FREE: u8 = 0;

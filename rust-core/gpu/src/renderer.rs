@@ -202,9 +202,9 @@ impl Renderer {
         self.draw_until_complete(camera, settings, layers, Output::Image)?;
         let pixels = u64::from(camera.width) * u64::from(camera.height);
         let mut frame = Frame { width: camera.width, height: camera.height, ..Frame::default() };
-        frame.color = readback::pixels(&self.gpu, &self.main.image, pixels)?;
+        frame.color = readback::read(&self.gpu, &self.main.image, pixels)?;
         if layers {
-            let values: Vec<[u32; 4]> = readback::pixels(&self.gpu, &self.main.layers, pixels)?;
+            let values: Vec<[u32; 4]> = readback::read(&self.gpu, &self.main.layers, pixels)?;
             if settings.depth {
                 frame.expected_depth = values.iter().map(|v| f32::from_bits(v[0])).collect();
                 frame.median_depth = values.iter().map(|v| f32::from_bits(v[1])).collect();
@@ -233,7 +233,7 @@ impl Renderer {
         }
         self.draw_until_complete(camera, settings, true, Output::Tile([x / TILE, y / TILE]))?;
         let pixels = u64::from(TILE * TILE);
-        let values: Vec<[u32; 4]> = readback::pixels(&self.gpu, &self.pixel.layers, pixels)?;
+        let values: Vec<[u32; 4]> = readback::read(&self.gpu, &self.pixel.layers, pixels)?;
         let [expected, median, splat, label] = values[((y % TILE) * TILE + x % TILE) as usize];
         let (expected, median) = (f32::from_bits(expected), f32::from_bits(median));
         Ok((splat != NO_SPLAT).then(|| Pick {
@@ -343,7 +343,7 @@ impl Renderer {
     ) -> Result<Vec<[f32; 3]>, GpuError> {
         self.deform_timed(time, static_threshold)?;
         let poses = self.deform.as_ref().map_or(&self.buffers.canonical_poses, |s| &s.poses);
-        let poses: Vec<Pose> = readback::pixels(&self.gpu, poses, u64::from(self.buffers.count))?;
+        let poses: Vec<Pose> = readback::read(&self.gpu, poses, u64::from(self.buffers.count))?;
         Ok(poses.iter().map(|pose| pose.position).collect())
     }
 

@@ -11,6 +11,12 @@ pub struct Shader {
 }
 
 impl Shader {
+    /// A shader made of `parts`, for example files of [`common`] and one of its own.
+    #[must_use]
+    pub const fn new(name: &'static str, parts: &'static [&'static str]) -> Self {
+        Self { name, parts }
+    }
+
     /// The source of the whole module.
     #[must_use]
     pub fn source(&self) -> String {
@@ -24,15 +30,31 @@ macro_rules! wgsl {
     };
 }
 
-const DISPATCH: &str = wgsl!("common/dispatch");
-const COUNTERS: &str = wgsl!("common/counters");
-const SCAN: &str = wgsl!("common/scan");
-const FRAME: &str = wgsl!("common/frame");
-const NUMBERS: &str = wgsl!("common/numbers");
-const REGION: &str = wgsl!("common/region");
-const TRIGONOMETRY: &str = wgsl!("common/trigonometry");
-const DEFORMATION: &str = wgsl!("common/deformation");
-const DEFORM_SPLAT: &str = wgsl!("common/deform_splat");
+/// Files that several shaders share. Each says at its start what it needs before it.
+pub mod common {
+    /// Counting through folded dispatches: `flat_group`, `folded`, `divide_up`.
+    pub const DISPATCH: &str = wgsl!("common/dispatch");
+    /// Indices into the counts of a frame.
+    pub const COUNTERS: &str = wgsl!("common/counters");
+    /// Prefix sums of one workgroup of 256.
+    pub const SCAN: &str = wgsl!("common/scan");
+    /// The frame's uniform block and a splat's pose.
+    pub const FRAME: &str = wgsl!("common/frame");
+    /// Numbers that are not finite, and sums of two floats.
+    pub const NUMBERS: &str = wgsl!("common/numbers");
+    /// The part of the image at hand.
+    pub const REGION: &str = wgsl!("common/region");
+    /// sin and cos of any octave.
+    pub const TRIGONOMETRY: &str = wgsl!("common/trigonometry");
+    /// The uniform block of the deformation stage.
+    pub const DEFORMATION: &str = wgsl!("common/deformation");
+    /// What every variant of the network shares.
+    pub const DEFORM_SPLAT: &str = wgsl!("common/deform_splat");
+}
+
+use common::{
+    COUNTERS, DEFORM_SPLAT, DEFORMATION, DISPATCH, FRAME, NUMBERS, REGION, SCAN, TRIGONOMETRY,
+};
 
 /// Which splats move.
 pub const MASK: Shader = Shader {

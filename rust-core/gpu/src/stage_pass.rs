@@ -2,7 +2,7 @@
 
 /// Where a dispatch's size comes from.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Groups<'a> {
+pub enum Groups<'a> {
     /// Known on the host.
     Direct(u32),
     /// Written by an earlier dispatch, at this byte offset.
@@ -10,7 +10,7 @@ pub(crate) enum Groups<'a> {
 }
 
 /// Dispatches with the pipeline and bind group that are set.
-pub(crate) fn dispatch(pass: &mut wgpu::ComputePass<'_>, groups: Groups<'_>) {
+pub fn dispatch(pass: &mut wgpu::ComputePass<'_>, groups: Groups<'_>) {
     match groups {
         Groups::Direct(count) => {
             let (x, y, z) = crate::kernel::folded(count);

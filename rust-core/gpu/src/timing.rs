@@ -64,7 +64,7 @@ impl Timer {
 
     /// Time of the deformation stage alone.
     pub(crate) fn read_deform(&self, gpu: &Gpu) -> Result<Option<Duration>, GpuError> {
-        let ticks: Vec<u64> = readback::pixels(gpu, &self.resolved, 2)?;
+        let ticks: Vec<u64> = readback::read(gpu, &self.resolved, 2)?;
         Ok(self.between(ticks[0], ticks[1]))
     }
 
@@ -75,7 +75,7 @@ impl Timer {
 
     /// Times of the last frame; `None` when a clock has run backwards.
     pub(crate) fn read(&self, gpu: &Gpu) -> Result<Option<StageTimes>, GpuError> {
-        let ticks: Vec<u64> = readback::pixels(gpu, &self.resolved, u64::from(QUERIES))?;
+        let ticks: Vec<u64> = readback::read(gpu, &self.resolved, u64::from(QUERIES))?;
         let between = |from, to| self.between(from, to);
         let times = || {
             Some(StageTimes {

@@ -188,7 +188,7 @@ impl DeformStage {
         const CHECKED: u32 = 4096;
         const CHECK_TIME: f32 = 0.37;
         let checked = u64::from(self.count.min(CHECKED));
-        let canonical: Vec<Pose> = readback::pixels(gpu, canonical, checked)?;
+        let canonical: Vec<Pose> = readback::read(gpu, canonical, checked)?;
         let plain = self.evaluate_at(gpu, CHECK_TIME, checked)?;
         let name = candidate.name;
         let before = std::mem::replace(&mut self.network, candidate);
@@ -210,7 +210,7 @@ impl DeformStage {
         self.record_network(work, &mut pass, Groups::Direct(0));
         drop(pass);
         gpu.queue().submit([encoder.finish()]);
-        readback::pixels(gpu, &self.poses, count)
+        readback::read(gpu, &self.poses, count)
     }
 
     /// Name of the kernel that evaluates the network.

@@ -7,7 +7,7 @@ mod trigonometry;
 use crate::{Gpu, GpuError, GpuOptions};
 
 /// A device, or none, loudly.
-fn device() -> Option<Gpu> {
+pub(crate) fn device() -> Option<Gpu> {
     match Gpu::open(&GpuOptions::default()) {
         Ok(gpu) => Some(gpu),
         Err(GpuError::NoAdapter { .. }) => {

@@ -63,7 +63,7 @@ fn sort(gpu: &Gpu, keys: &[u32], capacity: u32) -> (Vec<u32>, Vec<u32>) {
     }
     gpu.queue().submit([encoder.finish()]);
     let result = plan.len() % 2;
-    let read = |buffer| readback::pixels(gpu, buffer, u64::from(n)).unwrap();
+    let read = |buffer| readback::read(gpu, buffer, u64::from(n)).unwrap();
     (read(&pairs.keys[result]), read(&pairs.values[result]))
 }
 
@@ -136,5 +136,5 @@ fn depth_sort(gpu: &Gpu, keys: &[u32], low: &[u32], drawn: u32) -> Vec<u32> {
         }
     }
     gpu.queue().submit([encoder.finish()]);
-    readback::pixels(gpu, &pairs.values[1], u64::from(drawn)).unwrap()
+    readback::read(gpu, &pairs.values[1], u64::from(drawn)).unwrap()
 }

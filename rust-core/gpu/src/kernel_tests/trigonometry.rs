@@ -47,7 +47,7 @@ fn worst_error(range: f32) -> Option<f64> {
         dispatch(&mut pass, Groups::Direct((n / 256) as u32));
     }
     gpu.queue().submit([encoder.finish()]);
-    let waves: Vec<[f32; 2]> = readback::pixels(&gpu, &output, (n * OCTAVES) as u64).unwrap();
+    let waves: Vec<[f32; 2]> = readback::read(&gpu, &output, (n * OCTAVES) as u64).unwrap();
     let mut worst = 0.0f64;
     for (i, &x) in angles.iter().enumerate() {
         for octave in 0..OCTAVES {
