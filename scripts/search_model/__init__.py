@@ -1,0 +1,1 @@
+"""What the scripts around text search share: exporting towers, and the bundled model."""
