@@ -17,7 +17,8 @@ let package = Package(
   ],
   targets: [
     .target(name: "TrapezeKit", linkerSettings: linkerSettings),
-    .testTarget(name: "TrapezeKitTests", dependencies: ["TrapezeKit"]),
+    .testTarget(
+      name: "TrapezeKitTests", dependencies: ["TrapezeKit"], resources: [.copy("Fixtures")]),
   ],
   swiftLanguageModes: [.v6]
 )
