@@ -162,6 +162,13 @@ fn a_picked_pixel_holds_what_the_whole_frame_shows_there() {
     }
 }
 
+/// The same camera, with everything behind it.
+fn looking_away(camera: &Camera) -> Camera {
+    let mut away = camera.clone();
+    away.world_to_camera.w_axis.z -= 1e3;
+    away
+}
+
 #[test]
 fn buffers_that_are_too_small_grow_until_nothing_is_clipped() {
     let Some(gpu) = gpu(DeviceProfile::Full) else { return };
@@ -173,9 +180,15 @@ fn buffers_that_are_too_small_grow_until_nothing_is_clipped() {
     let mut waiting = Renderer::with_options(&gpu, scene.clone(), options).unwrap();
     assert_same_color(&waiting.render(&camera, &everything()).unwrap(), &expected, "waiting");
 
-    // Playback: the first frame is not drawn, the number that was needed arrives, the next one is.
+    // The first frame of a size is waited for, whatever it needs.
     let mut playing = Renderer::with_options(&gpu, scene, options).unwrap();
+    let waits = gpu.created().waits;
+    assert!(!playing.draw(&looking_away(&camera), &everything()).unwrap());
+    assert!(gpu.created().waits > waits);
+    // Playback: the frame is not drawn, the number that was needed arrives, the next one is.
+    let waits = gpu.created().waits;
     assert!(!playing.draw(&camera, &everything()).unwrap());
+    assert_eq!(gpu.created().waits, waits);
     gpu.wait().unwrap();
     assert!(playing.draw(&camera, &everything()).unwrap(), "the buffers have grown");
     gpu.wait().unwrap();

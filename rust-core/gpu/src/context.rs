@@ -1,6 +1,6 @@
 //! The device: choosing an adapter, and making its objects.
 
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use wgpu::util::DeviceExt;
@@ -72,7 +72,8 @@ struct Inner {
     limits: wgpu::Limits,
     features: wgpu::Features,
     created: Counts,
-    lost: Arc<AtomicBool>,
+    /// Why the device is gone, once it is.
+    lost: Arc<OnceLock<String>>,
     kernels: OnceLock<Kernels>,
 }
 
@@ -133,13 +134,14 @@ impl Gpu {
         });
         let (device, queue) =
             pollster::block_on(request).map_err(|e| GpuError::Device(e.to_string()))?;
-        let lost = Arc::new(AtomicBool::new(false));
-        let flag = lost.clone();
+        let lost = Arc::new(OnceLock::new());
+        let cell = lost.clone();
         device.set_device_lost_callback(move |reason, message| {
+            // Destroyed is what a closed device tells too, when nobody listens any more.
             if reason != wgpu::DeviceLostReason::Destroyed {
                 tracing::error!("GPU device lost: {message}");
-                flag.store(true, Ordering::Release);
             }
+            let _ = cell.set(message);
         });
         let created = Counts::default();
         Ok(Self {
@@ -191,7 +193,13 @@ impl Gpu {
     /// Whether the device is gone: every renderer on it has to be made again on a new one.
     #[must_use]
     pub fn is_lost(&self) -> bool {
-        self.inner.lost.load(Ordering::Acquire)
+        self.inner.lost.get().is_some()
+    }
+
+    /// # Errors
+    /// [`GpuError::DeviceLost`] when the device is gone.
+    pub fn check(&self) -> Result<(), GpuError> {
+        self.inner.lost.get().map_or(Ok(()), |why| Err(GpuError::DeviceLost(why.clone())))
     }
 
     /// The wgpu instance, for surfaces.
@@ -244,24 +252,22 @@ impl Gpu {
     /// Waits until the GPU has done all that was submitted.
     ///
     /// # Errors
-    /// [`GpuError::Device`] when it is lost.
+    /// [`GpuError::DeviceLost`] when it is gone.
     pub fn wait(&self) -> Result<(), GpuError> {
         self.inner.created.waits.fetch_add(1, Ordering::Relaxed);
-        self.device()
-            .poll(wgpu::PollType::wait_indefinitely())
-            .map_err(|e| GpuError::Device(e.to_string()))?;
-        if self.is_lost() { Err(GpuError::Device("lost".into())) } else { Ok(()) }
+        let polled = self.device().poll(wgpu::PollType::wait_indefinitely());
+        self.check()?;
+        polled.map(|_| ()).map_err(|e| GpuError::Device(e.to_string()))
     }
 
     /// Lets callbacks of finished work run, without waiting.
     ///
     /// # Errors
-    /// [`GpuError::Device`] when the device is lost.
+    /// [`GpuError::DeviceLost`] when the device is gone.
     pub fn poll(&self) -> Result<(), GpuError> {
-        self.device()
-            .poll(wgpu::PollType::Poll)
-            .map_err(|e| GpuError::Device(e.to_string()))
-            .map(|_| ())
+        let polled = self.device().poll(wgpu::PollType::Poll);
+        self.check()?;
+        polled.map(|_| ()).map_err(|e| GpuError::Device(e.to_string()))
     }
 
     /// The pipelines of this device; made when they are first asked for.

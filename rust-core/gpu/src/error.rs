@@ -46,7 +46,19 @@ pub enum GpuError {
         /// Value of the network.
         found: usize,
     },
-    /// The driver refused or lost the device.
+    /// A window cannot be drawn into, or not any more.
+    #[error("surface: expected {expected}, found {found}")]
+    Surface {
+        /// What was needed.
+        expected: &'static str,
+        /// What there was instead.
+        found: String,
+    },
+    /// The device is gone (unplugged, reset, taken by the system): open another, and make the
+    /// renderers and surfaces again on it.
+    #[error("GPU device: lost ({0})")]
+    DeviceLost(String),
+    /// The driver refused something.
     #[error("GPU device: {0}")]
     Device(String),
     /// Scene data that do not fit together, or a camera that cannot project.

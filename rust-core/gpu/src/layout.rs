@@ -108,6 +108,15 @@ pub(crate) struct Deformation {
     pub padding_2: u32,
 }
 
+/// `Presentation` of present.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct Presentation {
+    pub background: [f32; 4],
+    pub image: [u32; 2],
+    pub texture: [u32; 2],
+}
+
 /// Indices of common/counters.wgsl.
 pub(crate) mod counter {
     pub(crate) const VISIBLE: usize = 0;
@@ -212,6 +221,7 @@ mod tests {
             padding_1,
             padding_2,
         );
+        assert_same_layout!(shaders::PRESENT, Presentation, background, image, texture);
         assert_same_layout!(
             shaders::DEFORM,
             Deformation,

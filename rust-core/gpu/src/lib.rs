@@ -20,6 +20,7 @@ mod scene_buffers;
 pub mod shaders;
 mod sort;
 mod stage_pass;
+mod surface;
 mod tiles;
 mod timing;
 
@@ -30,6 +31,7 @@ pub use device_report::DeviceReport;
 pub use error::GpuError;
 pub use parameters::{ParameterArray, ParameterBuffers};
 pub use renderer::{Pick, Renderer, RendererOptions};
+pub use surface::{Presented, SurfaceOptions, WindowSurface};
 pub use timing::StageTimes;
 
 #[cfg(test)]

@@ -15,6 +15,7 @@ use crate::region::TILE;
 use crate::scene_buffers::SceneBuffers;
 use crate::sort::{PairBuffers, SortPlan};
 use crate::stage_pass::{Groups, Stage, begin};
+use crate::surface::ImageView;
 use crate::tiles::{DrawingOrder, EntryBuffers, Target, TargetRequest, max_capacity, tile_count};
 use crate::timing::{StageTimes, Timer};
 use crate::{Gpu, GpuError};
@@ -191,6 +192,11 @@ impl Renderer {
         self.last_counts.most_entries
     }
 
+    /// The image that was drawn last; a transparent pixel before the first.
+    pub(crate) fn image(&self) -> ImageView<'_> {
+        ImageView { buffer: &self.main.image, size: self.main.size().map(|side| side.max(1)) }
+    }
+
     /// Renders one frame and waits for it.
     ///
     /// # Errors
@@ -243,7 +249,9 @@ impl Renderer {
         }))
     }
 
-    /// Draws one frame into the image on the GPU, without waiting for anything.
+    /// Draws one frame into the image on the GPU, without waiting for anything. Only a frame of
+    /// another size than the last one is waited for: there is no image of that size that could
+    /// stay on the screen until it fits.
     ///
     /// When a frame needs larger buffers than there are, the GPU leaves the last image as it is;
     /// the number that is needed arrives with a later call, which makes the buffers grow. `true`
@@ -254,10 +262,12 @@ impl Renderer {
     /// device is lost.
     pub fn draw(&mut self, camera: &Camera, settings: &FrameSettings) -> Result<bool, GpuError> {
         camera.validate()?;
-        if self.gpu.is_lost() {
-            return Err(GpuError::Device("lost".into()));
-        }
         self.gpu.poll()?;
+        if self.main.size() != [camera.width, camera.height] {
+            let layers = settings.depth || settings.top_contributor;
+            self.draw_until_complete(camera, settings, layers, Output::Image)?;
+            return Ok(false);
+        }
         let mut grown = false;
         if let Some(counts) = self.counts.latest() {
             self.last_counts = counts;

@@ -108,8 +108,12 @@ pub const RANGES: Shader =
 pub const RASTERIZE: Shader =
     Shader { name: "rasterize", parts: &[DISPATCH, REGION, wgsl!("rasterize")] };
 
+/// Onto the screen.
+pub const PRESENT: Shader = Shader { name: "present", parts: &[wgsl!("present")] };
+
 /// Every shader that any device can run.
-pub const ALL: [Shader; 8] = [MASK, DEFORM, PROJECT, SORT, ARGUMENTS, BIN, RANGES, RASTERIZE];
+pub const ALL: [Shader; 9] =
+    [MASK, DEFORM, PROJECT, SORT, ARGUMENTS, BIN, RANGES, RASTERIZE, PRESENT];
 
 /// Shaders that need features which not every device has.
 pub const OPTIONAL: [Shader; 1] = [DEFORM_MATRIX];
