@@ -65,6 +65,7 @@ pub struct Gpu {
 
 #[derive(Debug)]
 struct Inner {
+    options: GpuOptions,
     instance: wgpu::Instance,
     adapter: wgpu::Adapter,
     device: wgpu::Device,
@@ -74,6 +75,8 @@ struct Inner {
     created: Counts,
     /// Why the device is gone, once it is.
     lost: Arc<OnceLock<String>>,
+    /// The first error that nobody expected: a fault in this crate or in the driver.
+    fault: Arc<OnceLock<String>>,
     kernels: OnceLock<Kernels>,
 }
 
@@ -143,6 +146,14 @@ impl Gpu {
             }
             let _ = cell.set(message);
         });
+        let fault = Arc::new(OnceLock::new());
+        let cell = fault.clone();
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            // The first one; what follows from it says little.
+            if cell.set(error.to_string()).is_ok() {
+                tracing::error!("GPU: {error}");
+            }
+        }));
         let created = Counts::default();
         Ok(Self {
             inner: Arc::new(Inner {
@@ -152,8 +163,10 @@ impl Gpu {
                 queue,
                 limits,
                 features,
+                options: options.clone(),
                 created,
                 lost,
+                fault,
                 kernels: OnceLock::new(),
             }),
         })
@@ -196,10 +209,24 @@ impl Gpu {
         self.inner.lost.get().is_some()
     }
 
+    /// Whether the device can still be used.
+    ///
     /// # Errors
-    /// [`GpuError::DeviceLost`] when the device is gone.
+    /// [`GpuError::DeviceLost`] when it is gone, [`GpuError::Device`] when it has refused something
+    /// that it should not have.
     pub fn check(&self) -> Result<(), GpuError> {
-        self.inner.lost.get().map_or(Ok(()), |why| Err(GpuError::DeviceLost(why.clone())))
+        if let Some(why) = self.inner.lost.get() {
+            return Err(GpuError::DeviceLost(why.clone()));
+        }
+        self.inner.fault.get().map_or(Ok(()), |what| Err(GpuError::Device(what.clone())))
+    }
+
+    /// Opens a device anew with the same options, after this one was lost.
+    ///
+    /// # Errors
+    /// Those of [`open`](Self::open).
+    pub fn reopened(&self) -> Result<Self, GpuError> {
+        Self::open_on(self.instance().clone(), None, &self.inner.options)
     }
 
     /// The wgpu instance, for surfaces.

@@ -30,7 +30,7 @@ pub use deform::NetworkPrecision;
 pub use device_report::DeviceReport;
 pub use error::GpuError;
 pub use parameters::{ParameterArray, ParameterBuffers};
-pub use renderer::{Pick, Renderer, RendererOptions};
+pub use renderer::{Pick, PickTicket, Renderer, RendererOptions};
 pub use surface::{Presented, SurfaceOptions, WindowSurface};
 pub use timing::StageTimes;
 

@@ -8,6 +8,10 @@ use bytemuck::AnyBitPattern;
 use crate::layout::counter;
 use crate::{Gpu, GpuError};
 
+const PENDING: u8 = 0;
+const READY: u8 = 1;
+const FAILED: u8 = 2;
+
 /// Most bytes that are read in one piece.
 const PIECE: u64 = 64 << 20;
 
@@ -81,7 +85,7 @@ pub(crate) struct Counts {
 }
 
 impl Counts {
-    fn from_words(words: &[u32]) -> Self {
+    pub(crate) fn from_words(words: &[u32]) -> Self {
         Self { visible: words[counter::VISIBLE], most_entries: words[counter::MOST_ENTRIES] }
     }
 }
@@ -89,80 +93,4 @@ impl Counts {
 /// Reads the counts of the last frame, and waits for them.
 pub(crate) fn counts(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Counts, GpuError> {
     Ok(Counts::from_words(&read::<u32>(gpu, buffer, counter::COUNT as u64)?))
-}
-
-const FREE: u8 = 0;
-const PENDING: u8 = 1;
-const READY: u8 = 2;
-const FAILED: u8 = 3;
-
-/// Reads counts without waiting: a few small buffers in turn, each mapped when the GPU has come to
-/// it. A frame for which none is free is not counted; the next one is.
-#[derive(Debug)]
-pub(crate) struct CountReader {
-    slots: [CountSlot; 3],
-    recorded: Option<usize>,
-}
-
-#[derive(Debug)]
-struct CountSlot {
-    buffer: wgpu::Buffer,
-    state: Arc<AtomicU8>,
-}
-
-impl CountReader {
-    pub(crate) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
-        let slot = || -> Result<CountSlot, GpuError> {
-            let buffer = gpu.buffer("counts readback", 4 * counter::COUNT as u64, usage)?;
-            Ok(CountSlot { buffer, state: Arc::new(AtomicU8::new(FREE)) })
-        };
-        Ok(Self { slots: [slot()?, slot()?, slot()?], recorded: None })
-    }
-
-    /// Counts that have arrived since the last call; those of the most demanding frame.
-    pub(crate) fn latest(&mut self) -> Option<Counts> {
-        let mut latest: Option<Counts> = None;
-        for slot in &self.slots {
-            match slot.state.load(Ordering::Acquire) {
-                READY => {}
-                FAILED => {
-                    slot.state.store(FREE, Ordering::Release);
-                    continue;
-                }
-                _ => continue,
-            }
-            if let Ok(view) = slot.buffer.slice(..4 * counter::COUNT as u64).get_mapped_range() {
-                let words: Vec<u32> = bytemuck::pod_collect_to_vec(&view);
-                let counts = Counts::from_words(&words);
-                if latest.is_none_or(|l| counts.most_entries >= l.most_entries) {
-                    latest = Some(counts);
-                }
-            }
-            slot.buffer.unmap();
-            slot.state.store(FREE, Ordering::Release);
-        }
-        latest
-    }
-
-    /// Records copying the counts of the frame at hand.
-    pub(crate) fn record(&mut self, encoder: &mut wgpu::CommandEncoder, counts: &wgpu::Buffer) {
-        self.recorded =
-            self.slots.iter().position(|slot| slot.state.load(Ordering::Acquire) == FREE);
-        if let Some(i) = self.recorded {
-            let bytes = 4 * counter::COUNT as u64;
-            encoder.copy_buffer_to_buffer(counts, 0, &self.slots[i].buffer, 0, bytes);
-        }
-    }
-
-    /// Asks for the counts that were recorded, after the frame has been submitted.
-    pub(crate) fn map(&mut self) {
-        let Some(i) = self.recorded.take() else { return };
-        let slot = &self.slots[i];
-        slot.state.store(PENDING, Ordering::Release);
-        let state = slot.state.clone();
-        slot.buffer.slice(..4 * counter::COUNT as u64).map_async(wgpu::MapMode::Read, move |r| {
-            state.store(if r.is_ok() { READY } else { FAILED }, Ordering::Release);
-        });
-    }
 }

@@ -1,24 +1,29 @@
 //! The stages put together.
 
-use std::sync::Arc;
-use std::time::Duration;
+mod measure;
+mod pick;
 
-use trapeze_scene::{Camera, Frame, FrameSettings, NO_SPLAT, Scene, ShDegree};
+use std::sync::Arc;
+
+pub use pick::{Pick, PickTicket};
+use trapeze_scene::{Camera, Frame, FrameSettings, Scene, ShDegree};
 
 use crate::activate::HarmonicsStorage;
 use crate::deform::{DeformStage, DeformWork, NetworkPrecision};
 use crate::kernels::Kernels;
-use crate::layout::{Pose, argument, counter};
+use crate::late_reader::{LateReader, Words};
+use crate::layout::{argument, counter};
 use crate::project::{ProjectStage, ProjectedBuffers, frame_uniform};
-use crate::readback::{self, CountReader, Counts};
-use crate::region::TILE;
+use crate::readback::{self, Counts};
 use crate::scene_buffers::SceneBuffers;
 use crate::sort::{PairBuffers, SortPlan};
 use crate::stage_pass::{Groups, Stage, begin};
 use crate::surface::ImageView;
 use crate::tiles::{DrawingOrder, EntryBuffers, Target, TargetRequest, max_capacity, tile_count};
-use crate::timing::{StageTimes, Timer};
+use crate::timing::Timer;
 use crate::{Gpu, GpuError};
+
+use self::pick::PickStage;
 
 /// How a scene is kept on the GPU.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,17 +49,6 @@ impl Default for RendererOptions {
     }
 }
 
-/// What a pixel shows.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pick {
-    /// Index of the top contributor.
-    pub splat: u32,
-    /// Label of its cluster, when the scene has clusters.
-    pub cluster: Option<u32>,
-    /// Median depth where transmittance falls to ½, else expected depth; world units.
-    pub depth: f32,
-}
-
 /// Renders a scene on the GPU.
 ///
 /// [`render`](Self::render) waits for the image and returns it. [`draw`](Self::draw) is for
@@ -64,6 +58,7 @@ pub struct Pick {
 pub struct Renderer {
     gpu: Gpu,
     scene: Arc<Scene>,
+    options: RendererOptions,
     buffers: SceneBuffers,
     frame_uniform: wgpu::Buffer,
     deform: Option<DeformStage>,
@@ -74,10 +69,11 @@ pub struct Renderer {
     order: DrawingOrder,
     entries: EntryBuffers,
     main: Target,
-    pixel: Target,
+    pick: PickStage,
     /// Regions that the last frame needed.
     pieces: u32,
-    counts: CountReader,
+    /// Counts of frames under way.
+    counts: LateReader,
     timer: Option<Timer>,
     last_counts: Counts,
 }
@@ -149,6 +145,7 @@ impl Renderer {
         Ok(Self {
             gpu: gpu.clone(),
             scene,
+            options,
             frame_uniform,
             deform,
             project,
@@ -157,14 +154,22 @@ impl Renderer {
             depth_blocks: splats.div_ceil(depth_sort.block),
             depth_sort,
             main: Target::new(gpu)?,
-            pixel: Target::new(gpu)?,
+            pick: PickStage::new(gpu)?,
             pieces: 1,
-            counts: CountReader::new(gpu)?,
+            counts: LateReader::new(gpu, counter::COUNT as u32, COUNTED_FRAMES)?,
             timer: Timer::new(gpu)?,
             last_counts: Counts::default(),
             order,
             buffers,
         })
+    }
+
+    /// The same renderer on another device: what to do with one whose device is lost.
+    ///
+    /// # Errors
+    /// Those of [`with_options`](Self::with_options).
+    pub fn rebuilt_on(&self, gpu: &Gpu) -> Result<Self, GpuError> {
+        Self::with_options(gpu, self.scene.clone(), self.options)
     }
 
     /// The scene that is rendered.
@@ -222,33 +227,6 @@ impl Renderer {
         Ok(frame)
     }
 
-    /// What is seen at pixel (x, y), or `None` where nothing is or outside the image. Only that
-    /// pixel's tile is blended; the image of the last frame stays.
-    ///
-    /// # Errors
-    /// Those of [`render`](Self::render).
-    pub fn pick(
-        &mut self,
-        camera: &Camera,
-        settings: &FrameSettings,
-        (x, y): (u32, u32),
-    ) -> Result<Option<Pick>, GpuError> {
-        camera.validate()?;
-        if x >= camera.width || y >= camera.height {
-            return Ok(None);
-        }
-        self.draw_until_complete(camera, settings, true, Output::Tile([x / TILE, y / TILE]))?;
-        let pixels = u64::from(TILE * TILE);
-        let values: Vec<[u32; 4]> = readback::read(&self.gpu, &self.pixel.layers, pixels)?;
-        let [expected, median, splat, label] = values[((y % TILE) * TILE + x % TILE) as usize];
-        let (expected, median) = (f32::from_bits(expected), f32::from_bits(median));
-        Ok((splat != NO_SPLAT).then(|| Pick {
-            splat,
-            cluster: self.scene.clusters.as_ref().map(|_| label),
-            depth: if median.is_nan() { expected } else { median },
-        }))
-    }
-
     /// Draws one frame into the image on the GPU, without waiting for anything. Only a frame of
     /// another size than the last one is waited for: there is no image of that size that could
     /// stay on the screen until it fits.
@@ -269,92 +247,30 @@ impl Renderer {
             return Ok(false);
         }
         let mut grown = false;
-        if let Some(counts) = self.counts.latest() {
+        if let Some(counts) = self.arrived_counts()? {
             self.last_counts = counts;
             grown = self.make_room(counts, tile_count(self.main.size()))?;
         }
         let layers = settings.depth || settings.top_contributor;
         let mut encoder = self.encode(camera, settings, layers, Output::Image, false)?;
-        self.counts.record(&mut encoder, &self.order.counts);
+        let counts = Words { buffer: &self.order.counts, first: 0, count: counter::COUNT as u32 };
+        // A frame for which no slot is free is not counted; the next one is.
+        self.counts.record(&mut encoder, 0, &[counts]);
         self.gpu.queue().submit([encoder.finish()]);
-        self.counts.map();
+        self.counts.submitted();
         Ok(grown)
     }
 
-    /// Draws one frame, waits for it, and returns the time that each stage took on the GPU; `None`
-    /// where the device cannot tell.
-    ///
-    /// # Errors
-    /// Those of [`render`](Self::render).
-    pub fn draw_timed(
-        &mut self,
-        camera: &Camera,
-        settings: &FrameSettings,
-    ) -> Result<Option<StageTimes>, GpuError> {
-        camera.validate()?;
-        let layers = settings.depth || settings.top_contributor;
-        self.draw_until_complete(camera, settings, layers, Output::Image)?;
-        match &self.timer {
-            Some(timer) if self.main.regions().len() == 1 => timer.read(&self.gpu),
-            _ => Ok(None),
+    /// Counts that have arrived since the last call: those of the most demanding frame.
+    fn arrived_counts(&mut self) -> Result<Option<Counts>, GpuError> {
+        let mut most: Option<Counts> = None;
+        while let Some((_, words)) = self.counts.take()? {
+            let counts = Counts::from_words(&words);
+            if most.is_none_or(|m| counts.most_entries >= m.most_entries) {
+                most = Some(counts);
+            }
         }
-    }
-
-    /// Makes the next frame evaluate the network again, whatever was drawn last: for benchmarks.
-    pub fn forget_deformation(&mut self) {
-        if let Some(stage) = &mut self.deform {
-            stage.invalidate();
-        }
-    }
-
-    /// Name of the kernel that evaluates the network; `None` in scenes without one.
-    #[must_use]
-    pub fn network_kernel(&self) -> Option<&'static str> {
-        self.deform.as_ref().map(DeformStage::kernel_name)
-    }
-
-    /// Poses the splats and nothing else, and returns the time it took on the GPU; `None` where the
-    /// device cannot tell.
-    ///
-    /// # Errors
-    /// [`GpuError::Device`] when the device is lost.
-    pub fn deform_timed(
-        &mut self,
-        time: f32,
-        static_threshold: Option<f32>,
-    ) -> Result<Option<Duration>, GpuError> {
-        let Some(stage) = &mut self.deform else { return Ok(None) };
-        // The dispatch's size is computed by a kernel that is bound to a target.
-        let request =
-            TargetRequest { size: [TILE; 2], only_tile: Some([0, 0]), layers: false, pieces: 1 };
-        let kernels = self.gpu.kernels();
-        self.pixel.prepare(&self.gpu, request, self.entries.pairs.capacity)?;
-        self.pixel.bind(&self.gpu, &kernels.tiles, &self.order, &self.projected, &self.entries);
-        let mut encoder = self.gpu.device().create_command_encoder(&Default::default());
-        let queries = self.timer.as_ref().map(Timer::queries);
-        let work = stage.prepare(&self.gpu, time, static_threshold);
-        record_deform(stage, work, kernels, &self.pixel, &self.order, &mut encoder, queries);
-        if let Some(timer) = &self.timer {
-            timer.resolve_deform(&mut encoder);
-        }
-        self.gpu.queue().submit([encoder.finish()]);
-        self.gpu.wait()?;
-        self.timer.as_ref().map_or(Ok(None), |timer| timer.read_deform(&self.gpu))
-    }
-
-    /// Positions of all splats at a time, relative to the scene's origin.
-    ///
-    /// # Errors
-    /// [`GpuError::Device`] when the device is lost.
-    pub fn deformed_positions(
-        &mut self,
-        time: f32,
-        static_threshold: Option<f32>,
-    ) -> Result<Vec<[f32; 3]>, GpuError> {
-        self.deform_timed(time, static_threshold)?;
-        let poses = self.deform.as_ref().map_or(&self.buffers.canonical_poses, |s| &s.poses);
-        let poses: Vec<Pose> = readback::read(&self.gpu, poses, u64::from(self.buffers.count))?;
-        Ok(poses.iter().map(|pose| pose.position).collect())
+        Ok(most)
     }
 
     /// Draws until the frame has fitted into the buffers.
@@ -404,7 +320,7 @@ impl Renderer {
         if wanted > capacity {
             // The old buffers go first: both together might not fit.
             self.main.unbind();
-            self.pixel.unbind();
+            self.pick.target.unbind();
             let kernels = &self.gpu.kernels().sort;
             self.entries = EntryBuffers::new(&self.gpu, kernels, &self.order.counts, wanted)?;
         }
@@ -421,6 +337,7 @@ impl Renderer {
         timed: bool,
     ) -> Result<wgpu::CommandEncoder, GpuError> {
         let gpu = &self.gpu;
+        gpu.check()?;
         let kernels = gpu.kernels();
         let size = [camera.width, camera.height];
         let request = TargetRequest {
@@ -434,7 +351,7 @@ impl Renderer {
         };
         let target = match output {
             Output::Image => &mut self.main,
-            Output::Tile(_) => &mut self.pixel,
+            Output::Tile(_) => &mut self.pick.target,
         };
         target.prepare(gpu, request, self.entries.pairs.capacity)?;
         target.bind(gpu, &kernels.tiles, &self.order, &self.projected, &self.entries);
@@ -503,5 +420,10 @@ enum Output {
     Tile([u32; 2]),
 }
 
+/// Frames under way whose counts are read.
+const COUNTED_FRAMES: usize = 3;
 /// Lowest bits of the digits of a depth.
 const DEPTH_SHIFTS: [u32; 4] = [0, 8, 16, 24];
+
+#[cfg(test)]
+mod tests;
