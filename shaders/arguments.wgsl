@@ -5,7 +5,8 @@
 // One workgroup each. `drawing_order` runs after the first pass of the depth sort, `entries` after
 // the bands have been counted; the latter also turns the counts into positions, and where the
 // entries do not fit it lets nothing of the region run, so that the last image stays, and leaves
-// the number that is needed for the host.
+// the number that is needed for the host. In training it also stops what comes after, so that the
+// host can go back to the very step.
 
 struct Sizes {
     /// Keys per block of the depth sort.
@@ -30,6 +31,7 @@ const EMIT: u32 = 2u;
 const ENTRY_SORT: u32 = 3u;
 const RASTERIZE: u32 = 4u;
 const NETWORK: u32 = 5u;
+const ENTRY_CHUNKS: u32 = 6u;
 
 const SPLATS_PER_GROUP: u32 = 64u;
 
@@ -80,10 +82,16 @@ fn entries(@builtin(local_invocation_index) thread: u32) {
     }
     counts[ENTRIES] = before;
     counts[MOST_ENTRIES] = max(counts[MOST_ENTRIES], before);
-    let fits = before <= region.capacity;
+    var fits = before <= region.capacity;
+    if (region.halts != 0u) {
+        fits = fits && counts[HALTED] == 0u;
+        counts[HALTED] = select(1u, 0u, fits);
+        counts[DRAWN_FRAMES] += select(0u, 1u, fits);
+    }
     let sorted = select(0u, before, fits);
     counts[SORTED_ENTRIES] = sorted;
     set_arguments(EMIT, select(0u, groups, fits));
     set_arguments(ENTRY_SORT, divide_up(sorted, 256u * region.sort_keys_per_thread));
+    set_arguments(ENTRY_CHUNKS, divide_up(sorted, 256u));
     set_arguments(RASTERIZE, select(0u, region.tiles.x * region.tiles.y, fits));
 }

@@ -1,6 +1,7 @@
 // Stage 4: which tiles each splat touches.
 //
-// Needs: common/dispatch, common/counters, common/scan, common/region.
+// Needs: common/dispatch, common/counters, common/scan, common/region, and common/entries or
+// common/numbered_entries.
 //
 // Splats come in drawing order. A splat touches bands (rows of tiles), and in each band a run of
 // tiles, by the exact interval of x in which its ellipse meets the band's strip of pixel centres.
@@ -17,8 +18,6 @@
 @group(0) @binding(4) var<storage, read> counts: array<u32>;
 /// Entries of each group of 64 splats; after `offset`, where they start.
 @group(0) @binding(5) var<storage, read_write> group_entries: array<u32>;
-@group(0) @binding(6) var<storage, read_write> entry_tiles: array<u32>;
-@group(0) @binding(7) var<storage, read_write> entry_splats: array<u32>;
 
 const SPLATS_PER_GROUP: u32 = 64u;
 const LOG2_255: f32 = 7.994353437;
@@ -200,8 +199,7 @@ fn emit(
             let run_index = run_of_entry(entry);
             let target_index = position + entry;
             if (target_index < region.capacity) {
-                entry_tiles[target_index] = run_tiles[run_index] + entry;
-                entry_splats[target_index] = run_splats[run_index];
+                write_entry(target_index, run_tiles[run_index] + entry, run_splats[run_index]);
             }
         }
         position += entries;

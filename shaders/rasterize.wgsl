@@ -1,6 +1,6 @@
 // Stage 5: blending, front to back (Porter & Duff 1984; Kerbl et al. 2023).
 //
-// Needs: common/dispatch, common/region.
+// Needs: common/dispatch, common/region, common/blend.
 //
 // One workgroup per tile, one thread per pixel. The workgroup fetches its splats 256 at a time;
 // each pixel blends them in drawing order, four to a turn of the loop, until a blend would leave
@@ -21,9 +21,6 @@
 override DEPTH: bool = false;
 override TOP_CONTRIBUTOR: bool = false;
 
-const LOG2_255: f32 = 7.994353437;
-const ALPHA_MAX: f32 = 0.99;
-const TRANSMITTANCE_MIN: f32 = 1e-4;
 /// Largest alpha of a pixel: 1 − 10⁻⁴, rounded down. T stays above its minimum by rule; rounding
 /// in the sum of weights must not say otherwise.
 const MAX_IMAGE_ALPHA: f32 = 0.9999;
@@ -55,19 +52,15 @@ struct Pixel {
 fn blend(pixel: ptr<function, Pixel>, i: u32, point: vec2<f32>) {
     let centre = batch_centres[i];
     let extent = batch_extents[i];
-    let d = point - centre.xy;
-    let v1 = centre.z * d.x + centre.w * d.y;
-    let v2 = extent.x * d.y;
-    let power = v1 * v1 + v2 * v2;
-    // α ≥ 1/255, decided on the power: the same condition with less rounding.
-    if (!(power <= extent.y + LOG2_255)) {
+    let power = place_of(centre, extent.x, point - centre.xy).power;
+    if (!is_seen(power, extent.y)) {
         return;
     }
     let before = (*pixel).transmittance;
-    let alpha = min(exp2(extent.y - power), ALPHA_MAX);
+    let alpha = min(free_alpha(power, extent.y), ALPHA_MAX);
     let full = alpha * before;
-    let after = before - full;
-    if (!(after > TRANSMITTANCE_MIN)) {
+    let after = transmittance_after(before, alpha);
+    if (fills(after)) {
         (*pixel).transmittance = 0.0;
         return;
     }

@@ -19,5 +19,6 @@ struct Region {
     capacity: u32,
     /// Keys per thread of the entries' sort.
     sort_keys_per_thread: u32,
-    padding: u32,
+    /// Whether a frame that does not fit stops those after it (training).
+    halts: u32,
 }

@@ -24,7 +24,7 @@ struct Region {
     uint output_stride;
     uint capacity;
     uint sort_keys_per_thread;
-    uint padding;
+    uint halts;
 };
 struct Sizes {
     uint depth_block;
@@ -39,6 +39,8 @@ constant uint ENTRIES = 1u;
 constant uint SORTED_ENTRIES = 2u;
 constant uint DYNAMIC = 3u;
 constant uint MOST_ENTRIES = 4u;
+constant uint HALTED = 5u;
+constant uint DRAWN_FRAMES = 6u;
 constant uint SCAN_WIDTH = 256u;
 constant uint TILE = 16u;
 constant uint DEPTH_SORT = 0u;
@@ -47,6 +49,7 @@ constant uint EMIT = 2u;
 constant uint ENTRY_SORT = 3u;
 constant uint RASTERIZE = 4u;
 constant uint NETWORK = 5u;
+constant uint ENTRY_CHUNKS = 6u;
 constant uint SPLATS_PER_GROUP = 64u;
 
 uint flat_group(
@@ -207,6 +210,8 @@ struct entriesInput {
     uint before = 0u;
     uint first = 0u;
     uint count = {};
+    bool fits = {};
+    bool local = {};
     uint _e3 = counts[0];
     uint _e5 = divide_up(_e3, SPLATS_PER_GROUP);
     bool loop_init_1 = true;
@@ -254,16 +259,38 @@ struct entriesInput {
     counts[4] = metal::max(_e46, _e47);
     uint _e49 = before;
     uint _e52 = region.capacity;
-    bool fits = _e49 <= _e52;
-    uint _e55 = before;
-    uint sorted = fits ? _e55 : 0u;
+    fits = _e49 <= _e52;
+    uint _e57 = region.halts;
+    if (_e57 != 0u) {
+        bool _e60 = fits;
+        if (_e60) {
+            uint _e65 = counts[5];
+            local = _e65 == 0u;
+        } else {
+            local = false;
+        }
+        bool _e69 = local;
+        fits = _e69;
+        bool _e74 = fits;
+        counts[5] = _e74 ? 0u : 1u;
+        uint _e78 = counts[6];
+        bool _e81 = fits;
+        counts[6] = _e78 + (_e81 ? 1u : 0u);
+    }
+    uint _e85 = before;
+    bool _e86 = fits;
+    uint sorted = _e86 ? _e85 : 0u;
     counts[2] = sorted;
-    set_arguments(EMIT, fits ? _e5 : 0u, arguments, _buffer_sizes);
-    uint _e66 = region.sort_keys_per_thread;
-    uint _e68 = divide_up(sorted, 256u * _e66);
-    set_arguments(ENTRY_SORT, _e68, arguments, _buffer_sizes);
-    uint _e74 = region.tiles.x;
-    uint _e78 = region.tiles.y;
-    set_arguments(RASTERIZE, fits ? (_e74 * _e78) : 0u, arguments, _buffer_sizes);
+    bool _e92 = fits;
+    set_arguments(EMIT, _e92 ? _e5 : 0u, arguments, _buffer_sizes);
+    uint _e98 = region.sort_keys_per_thread;
+    uint _e100 = divide_up(sorted, 256u * _e98);
+    set_arguments(ENTRY_SORT, _e100, arguments, _buffer_sizes);
+    uint _e103 = divide_up(sorted, 256u);
+    set_arguments(ENTRY_CHUNKS, _e103, arguments, _buffer_sizes);
+    uint _e109 = region.tiles.x;
+    uint _e113 = region.tiles.y;
+    bool _e115 = fits;
+    set_arguments(RASTERIZE, _e115 ? (_e109 * _e113) : 0u, arguments, _buffer_sizes);
     return;
 }

@@ -7,8 +7,8 @@
 using metal::uint;
 
 struct _mslBufferSizes {
+    uint size1;
     uint size2;
-    uint size3;
     uint size4;
     uint size5;
     uint size6;
@@ -27,7 +27,7 @@ struct Region {
     uint output_stride;
     uint capacity;
     uint sort_keys_per_thread;
-    uint padding;
+    uint halts;
 };
 typedef uint type_4[1];
 typedef metal::float4 type_7[1];
@@ -47,6 +47,8 @@ constant uint ENTRIES = 1u;
 constant uint SORTED_ENTRIES = 2u;
 constant uint DYNAMIC = 3u;
 constant uint MOST_ENTRIES = 4u;
+constant uint HALTED = 5u;
+constant uint DRAWN_FRAMES = 6u;
 constant uint SCAN_WIDTH = 256u;
 constant uint TILE = 16u;
 constant uint SPLATS_PER_GROUP = 64u;
@@ -142,6 +144,19 @@ void scan_barrier(
     return;
 }
 
+void write_entry(
+    uint index,
+    uint tile,
+    uint splat,
+    device type_4& entry_tiles,
+    device type_4& entry_splats,
+    constant _mslBufferSizes& _buffer_sizes
+) {
+    entry_tiles[index] = tile;
+    entry_splats[index] = splat;
+    return;
+}
+
 uint naga_f2u32(float value) {
     return static_cast<uint>(metal::clamp(value, 0.0, 4294967000.0));
 }
@@ -185,10 +200,10 @@ void load_group(
         uint rank = (group_1 * SPLATS_PER_GROUP) + thread_3;
         uint _e12 = counts[0];
         if (rank < _e12) {
-            uint splat_2 = order[rank];
-            metal::float4 extent_1 = extents[splat_2];
-            metal::float4 centre_1 = centres[splat_2];
-            group_splats.inner[thread_3] = splat_2;
+            uint splat_3 = order[rank];
+            metal::float4 extent_1 = extents[splat_3];
+            metal::float4 centre_1 = centres[splat_3];
+            group_splats.inner[thread_3] = splat_3;
             group_centres.inner[thread_3] = centre_1;
             group_extents.inner[thread_3] = metal::float4(extent_1.xy, extent_1.w, 0.0);
             metal::uint2 _e35 = bands_of(centre_1.y, extent_1.w, region);
@@ -215,7 +230,7 @@ uint splat_of_band(
     uint item_1,
     threadgroup type_9& band_sums
 ) {
-    uint splat = 0u;
+    uint splat_1 = 0u;
     uint step = 32u;
     bool loop_init_1 = true;
     while(true) {
@@ -230,17 +245,17 @@ uint splat_of_band(
             break;
         }
         {
-            uint _e9 = splat;
+            uint _e9 = splat_1;
             uint _e10 = step;
             uint _e15 = band_sums.inner[(_e9 + _e10) - 1u];
             if (_e15 <= item_1) {
-                uint _e17 = splat;
+                uint _e17 = splat_1;
                 uint _e18 = step;
-                splat = _e17 + _e18;
+                splat_1 = _e17 + _e18;
             }
         }
     }
-    uint _e23 = splat;
+    uint _e23 = splat_1;
     return _e23;
 }
 
@@ -286,7 +301,7 @@ metal::float2 x_interval(
 
 TileRun tile_run(
     uint item_2,
-    uint splat_1,
+    uint splat_2,
     constant Region& region,
     threadgroup type_8& group_centres,
     threadgroup type_8& group_extents,
@@ -294,15 +309,15 @@ TileRun tile_run(
     threadgroup type_9& band_sums
 ) {
     uint before = 0u;
-    if (splat_1 > 0u) {
-        uint _e10 = band_sums.inner[splat_1 - 1u];
+    if (splat_2 > 0u) {
+        uint _e10 = band_sums.inner[splat_2 - 1u];
         before = _e10;
     }
-    uint _e13 = first_bands.inner[splat_1];
+    uint _e13 = first_bands.inner[splat_2];
     uint _e15 = before;
     uint band_1 = (_e13 + item_2) - _e15;
-    metal::float4 _e19 = group_centres.inner[splat_1];
-    metal::float4 _e22 = group_extents.inner[splat_1];
+    metal::float4 _e19 = group_centres.inner[splat_2];
+    metal::float4 _e22 = group_extents.inner[splat_2];
     metal::float2 _e23 = x_interval(_e19, _e22, band_1);
     uint _e27 = region.first_tile.x;
     float low_2 = static_cast<float>(_e27);
@@ -429,14 +444,14 @@ struct emitInput {
 , metal::uint3 groups_1 [[threadgroups_per_grid]]
 , uint thread_1 [[thread_index_in_threadgroup]]
 , threadgroup type_2& scan_values
+, device type_4& entry_tiles [[user(fake0)]]
+, device type_4& entry_splats [[user(fake0)]]
 , constant Region& region [[user(fake0)]]
 , device type_4 const& order [[user(fake0)]]
 , device type_7 const& centres [[user(fake0)]]
 , device type_7 const& extents [[user(fake0)]]
 , device type_4 const& counts [[user(fake0)]]
 , device type_4 const& group_entries [[user(fake0)]]
-, device type_4& entry_tiles [[user(fake0)]]
-, device type_4& entry_splats [[user(fake0)]]
 , threadgroup type_8& group_centres
 , threadgroup type_8& group_extents
 , threadgroup type_9& group_splats
@@ -462,8 +477,8 @@ struct emitInput {
     bool loop_init_4 = true;
     while(true) {
         if (!loop_init_4) {
-            uint _e78 = first_item;
-            first_item = _e78 + 256u;
+            uint _e74 = first_item;
+            first_item = _e74 + 256u;
         }
         loop_init_4 = false;
         uint _e19 = first_item;
@@ -493,8 +508,8 @@ struct emitInput {
             bool loop_init_5 = true;
             while(true) {
                 if (!loop_init_5) {
-                    uint _e73 = entry;
-                    entry = _e73 + 256u;
+                    uint _e69 = entry;
+                    entry = _e69 + 256u;
                 }
                 loop_init_5 = false;
                 uint _e50 = entry;
@@ -510,16 +525,15 @@ struct emitInput {
                     uint target_index = _e54 + _e55;
                     uint _e59 = region.capacity;
                     if (target_index < _e59) {
-                        uint _e65 = run_tiles.inner[_e53];
-                        uint _e66 = entry;
-                        entry_tiles[target_index] = _e65 + _e66;
-                        uint _e72 = run_splats.inner[_e53];
-                        entry_splats[target_index] = _e72;
+                        uint _e63 = run_tiles.inner[_e53];
+                        uint _e64 = entry;
+                        uint _e68 = run_splats.inner[_e53];
+                        write_entry(target_index, _e63 + _e64, _e68, entry_tiles, entry_splats, _buffer_sizes);
                     }
                 }
             }
-            uint _e76 = position;
-            position = _e76 + entries_1;
+            uint _e72 = position;
+            position = _e72 + entries_1;
             metal::threadgroup_barrier(metal::mem_flags::mem_threadgroup);
         }
     }

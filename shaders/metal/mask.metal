@@ -69,6 +69,8 @@ constant uint ENTRIES = 1u;
 constant uint SORTED_ENTRIES = 2u;
 constant uint DYNAMIC = 3u;
 constant uint MOST_ENTRIES = 4u;
+constant uint HALTED = 5u;
+constant uint DRAWN_FRAMES = 6u;
 
 uint flat_group(
     metal::uint3 group_1,

@@ -20,7 +20,7 @@ struct Region {
     uint output_stride;
     uint capacity;
     uint sort_keys_per_thread;
-    uint padding;
+    uint halts;
 };
 typedef uint type_3[1];
 constant uint MAX_GROUPS_PER_ROW = 65535u;
@@ -29,6 +29,8 @@ constant uint ENTRIES = 1u;
 constant uint SORTED_ENTRIES = 2u;
 constant uint DYNAMIC = 3u;
 constant uint MOST_ENTRIES = 4u;
+constant uint HALTED = 5u;
+constant uint DRAWN_FRAMES = 6u;
 constant uint TILE = 16u;
 
 uint flat_group(

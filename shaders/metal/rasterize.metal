@@ -24,18 +24,22 @@ struct Region {
     uint output_stride;
     uint capacity;
     uint sort_keys_per_thread;
-    uint padding;
+    uint halts;
 };
-typedef uint type_3[1];
-typedef metal::float4 type_6[1];
-typedef metal::uint4 type_8[1];
-struct type_10 {
+struct Place {
+    float v1_;
+    float power;
+};
+typedef uint type_7[1];
+typedef metal::float4 type_8[1];
+typedef metal::uint4 type_10[1];
+struct type_11 {
     metal::float4 inner[256];
 };
-struct type_11 {
+struct type_12 {
     uint inner[256];
 };
-struct type_13 {
+struct type_14 {
     metal::atomic_uint inner[2];
 };
 struct Pixel {
@@ -69,61 +73,99 @@ uint flat_group(
     return (group_1.y * groups_1.x) + group_1.x;
 }
 
+Place place_of(
+    metal::float4 centre,
+    float u22_,
+    metal::float2 d
+) {
+    float v1_ = metal::fma(centre.z, d.x, centre.w * d.y);
+    float v2_ = u22_ * d.y;
+    return Place {v1_, metal::fma(v1_, v1_, v2_ * v2_)};
+}
+
+bool is_seen(
+    float power,
+    float log2_opacity
+) {
+    return power <= (log2_opacity + LOG2_255_);
+}
+
+float free_alpha(
+    float power_1,
+    float log2_opacity_1
+) {
+    return metal::exp2(log2_opacity_1 - power_1);
+}
+
+float transmittance_after(
+    float before,
+    float alpha
+) {
+    return metal::fma(-(alpha), before, before);
+}
+
+bool fills(
+    float after
+) {
+    return !((after > TRANSMITTANCE_MIN));
+}
+
 void blend(
     thread Pixel& pixel,
     uint i_1,
     metal::float2 point,
-    threadgroup type_10& batch_centres,
-    threadgroup type_10& batch_extents,
-    threadgroup type_10& batch_colors,
-    threadgroup type_11& batch_splats
+    threadgroup type_11& batch_centres,
+    threadgroup type_11& batch_extents,
+    threadgroup type_11& batch_colors,
+    threadgroup type_12& batch_splats
 ) {
     bool local_3 = {};
-    metal::float4 centre = batch_centres.inner[i_1];
+    metal::float4 centre_1 = batch_centres.inner[i_1];
     metal::float4 extent = batch_extents.inner[i_1];
-    metal::float2 d = point - centre.xy;
-    float v1_ = (centre.z * d.x) + (centre.w * d.y);
-    float v2_ = extent.x * d.y;
-    float power = (v1_ * v1_) + (v2_ * v2_);
-    if (!((power <= (extent.y + LOG2_255_)))) {
+    Place _e12 = place_of(centre_1, extent.x, point - centre_1.xy);
+    float power_2 = _e12.power;
+    bool _e15 = is_seen(power_2, extent.y);
+    if (!(_e15)) {
         return;
     }
-    float before = pixel.transmittance;
-    float alpha = metal::min(metal::exp2(extent.y - power), ALPHA_MAX);
-    float full = alpha * before;
-    float after = before - full;
-    if (!((after > TRANSMITTANCE_MIN))) {
+    float before_1 = pixel.transmittance;
+    float _e20 = free_alpha(power_2, extent.y);
+    float alpha_1 = metal::min(_e20, ALPHA_MAX);
+    float full = alpha_1 * before_1;
+    float _e24 = transmittance_after(before_1, alpha_1);
+    bool _e25 = fills(_e24);
+    if (_e25) {
         pixel.transmittance = 0.0;
         return;
     }
     metal::float4 color = batch_colors.inner[i_1];
-    metal::float3 _e47 = pixel.color;
-    pixel.color = _e47 + (full * color.xyz);
-    float _e52 = pixel.weight;
-    pixel.weight = _e52 + full;
+    metal::float3 _e32 = pixel.color;
+    pixel.color = _e32 + (full * color.xyz);
+    float _e37 = pixel.weight;
+    pixel.weight = _e37 + full;
     if (DEPTH) {
-        float _e56 = pixel.weighted_depth;
-        pixel.weighted_depth = _e56 + (full * extent.z);
-        if (before > 0.5) {
-            local_3 = after <= 0.5;
+        float _e41 = pixel.weighted_depth;
+        pixel.weighted_depth = _e41 + (full * extent.z);
+        if (before_1 > 0.5) {
+            local_3 = _e24 <= 0.5;
         } else {
             local_3 = false;
         }
-        bool _e67 = local_3;
-        if (_e67) {
+        bool _e52 = local_3;
+        if (_e52) {
             pixel.median_depth = as_type<uint>(extent.z);
         }
     }
     if (TOP_CONTRIBUTOR) {
-        float _e73 = pixel.top_weight;
-        if (full > _e73) {
+        float _e58 = pixel.top_weight;
+        if (full > _e58) {
             pixel.top_weight = full;
-            uint _e79 = batch_splats.inner[i_1];
-            pixel.top = _e79;
+            uint _e64 = batch_splats.inner[i_1];
+            pixel.top = _e64;
             pixel.top_label = as_type<uint>(color.w);
         }
     }
-    pixel.transmittance = after;
+    pixel.transmittance = _e24;
     return;
 }
 uint naga_mod(uint lhs, uint rhs) {
@@ -142,18 +184,18 @@ struct rasterizeInput {
 , metal::uint3 groups [[threadgroups_per_grid]]
 , uint thread_ [[thread_index_in_threadgroup]]
 , constant Region& region [[user(fake0)]]
-, device type_3 const& tile_starts [[user(fake0)]]
-, device type_3 const& entry_splats [[user(fake0)]]
-, device type_6 const& centres [[user(fake0)]]
-, device type_6 const& extents [[user(fake0)]]
-, device type_6 const& colors [[user(fake0)]]
-, device type_6& image [[user(fake0)]]
-, device type_8& layers [[user(fake0)]]
-, threadgroup type_10& batch_centres
-, threadgroup type_10& batch_extents
-, threadgroup type_10& batch_colors
-, threadgroup type_11& batch_splats
-, threadgroup type_13& open_pixels
+, device type_7 const& tile_starts [[user(fake0)]]
+, device type_7 const& entry_splats [[user(fake0)]]
+, device type_8 const& centres [[user(fake0)]]
+, device type_8 const& extents [[user(fake0)]]
+, device type_8 const& colors [[user(fake0)]]
+, device type_8& image [[user(fake0)]]
+, device type_10& layers [[user(fake0)]]
+, threadgroup type_11& batch_centres
+, threadgroup type_11& batch_extents
+, threadgroup type_11& batch_colors
+, threadgroup type_12& batch_splats
+, threadgroup type_14& open_pixels
 , constant _mslBufferSizes& _buffer_sizes [[user(fake0)]]
 ) {
     bool local = {};

@@ -75,7 +75,7 @@ pub(crate) struct Region {
     pub output_stride: u32,
     pub capacity: u32,
     pub sort_keys_per_thread: u32,
-    pub padding: u32,
+    pub halts: u32,
 }
 
 /// `Sizes` of arguments.wgsl.
@@ -123,6 +123,8 @@ pub(crate) mod counter {
     pub(crate) const SORTED_ENTRIES: usize = 2;
     pub(crate) const DYNAMIC: usize = 3;
     pub(crate) const MOST_ENTRIES: usize = 4;
+    pub(crate) const HALTED: usize = 5;
+    pub(crate) const DRAWN_FRAMES: usize = 6;
     /// Words of the buffer.
     pub(crate) const COUNT: usize = 8;
 }
@@ -135,6 +137,7 @@ pub(crate) mod argument {
     pub(crate) const ENTRY_SORT: u64 = 3;
     pub(crate) const RASTERIZE: u64 = 4;
     pub(crate) const NETWORK: u64 = 5;
+    pub(crate) const ENTRY_CHUNKS: u64 = 6;
     /// Bytes from one slot to the next.
     pub(crate) const STRIDE: u64 = 16;
     /// Bytes of the buffer.
@@ -211,7 +214,7 @@ mod tests {
             output_stride,
             capacity,
             sort_keys_per_thread,
-            padding,
+            halts,
         );
         assert_same_layout!(
             shaders::ARGUMENTS,
@@ -266,12 +269,15 @@ mod tests {
             ("SORTED_ENTRIES", counter::SORTED_ENTRIES as u64),
             ("DYNAMIC", counter::DYNAMIC as u64),
             ("MOST_ENTRIES", counter::MOST_ENTRIES as u64),
+            ("HALTED", counter::HALTED as u64),
+            ("DRAWN_FRAMES", counter::DRAWN_FRAMES as u64),
             ("DEPTH_SORT", argument::DEPTH_SORT),
             ("BIN", argument::BIN),
             ("EMIT", argument::EMIT),
             ("ENTRY_SORT", argument::ENTRY_SORT),
             ("RASTERIZE", argument::RASTERIZE),
             ("NETWORK", argument::NETWORK),
+            ("ENTRY_CHUNKS", argument::ENTRY_CHUNKS),
         ] {
             assert_eq!(u64::from(found[name]), value, "{name}");
         }

@@ -61,7 +61,7 @@ pub(crate) fn uniform(
         output_stride,
         capacity,
         sort_keys_per_thread,
-        padding: 0,
+        halts: 0,
     }
 }
 

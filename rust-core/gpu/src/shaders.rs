@@ -44,6 +44,16 @@ pub mod common {
     pub const NUMBERS: &str = wgsl!("common/numbers");
     /// The part of the image at hand.
     pub const REGION: &str = wgsl!("common/region");
+    /// World → ellipse on the image.
+    pub const PROJECTION: &str = wgsl!("common/projection");
+    /// Colour by spherical harmonics.
+    pub const HARMONICS: &str = wgsl!("common/harmonics");
+    /// One blend and its decisions.
+    pub const BLEND: &str = wgsl!("common/blend");
+    /// Tile entries for rendering.
+    pub const ENTRIES: &str = wgsl!("common/entries");
+    /// Tile entries for the backward pass.
+    pub const NUMBERED_ENTRIES: &str = wgsl!("common/numbered_entries");
     /// sin and cos of any octave.
     pub const TRIGONOMETRY: &str = wgsl!("common/trigonometry");
     /// The uniform block of the deformation stage.
@@ -53,7 +63,8 @@ pub mod common {
 }
 
 use common::{
-    COUNTERS, DEFORM_SPLAT, DEFORMATION, DISPATCH, FRAME, NUMBERS, REGION, SCAN, TRIGONOMETRY,
+    BLEND, COUNTERS, DEFORM_SPLAT, DEFORMATION, DISPATCH, ENTRIES, FRAME, HARMONICS,
+    NUMBERED_ENTRIES, NUMBERS, PROJECTION, REGION, SCAN, TRIGONOMETRY,
 };
 
 /// Which splats move.
@@ -91,8 +102,10 @@ pub const DEFORM_MATRIX: Shader = Shader {
     ],
 };
 /// World → image.
-pub const PROJECT: Shader =
-    Shader { name: "project", parts: &[DISPATCH, FRAME, NUMBERS, wgsl!("project")] };
+pub const PROJECT: Shader = Shader {
+    name: "project",
+    parts: &[DISPATCH, FRAME, NUMBERS, PROJECTION, HARMONICS, wgsl!("project")],
+};
 /// Stable radix sort.
 pub const SORT: Shader = Shader { name: "sort", parts: &[DISPATCH, COUNTERS, SCAN, wgsl!("sort")] };
 /// Sizes of later dispatches.
@@ -100,20 +113,25 @@ pub const ARGUMENTS: Shader =
     Shader { name: "arguments", parts: &[DISPATCH, COUNTERS, SCAN, REGION, wgsl!("arguments")] };
 /// Splats × tiles.
 pub const BIN: Shader =
-    Shader { name: "bin", parts: &[DISPATCH, COUNTERS, SCAN, REGION, wgsl!("bin")] };
+    Shader { name: "bin", parts: &[DISPATCH, COUNTERS, SCAN, REGION, ENTRIES, wgsl!("bin")] };
+/// Splats × tiles, for the backward pass.
+pub const BIN_NUMBERED: Shader = Shader {
+    name: "bin_numbered",
+    parts: &[DISPATCH, COUNTERS, SCAN, REGION, NUMBERED_ENTRIES, wgsl!("bin")],
+};
 /// Where each tile's entries start.
 pub const RANGES: Shader =
     Shader { name: "ranges", parts: &[DISPATCH, COUNTERS, REGION, wgsl!("ranges")] };
 /// Blending.
 pub const RASTERIZE: Shader =
-    Shader { name: "rasterize", parts: &[DISPATCH, REGION, wgsl!("rasterize")] };
+    Shader { name: "rasterize", parts: &[DISPATCH, REGION, BLEND, wgsl!("rasterize")] };
 
 /// Onto the screen.
 pub const PRESENT: Shader = Shader { name: "present", parts: &[wgsl!("present")] };
 
 /// Every shader that any device can run.
-pub const ALL: [Shader; 9] =
-    [MASK, DEFORM, PROJECT, SORT, ARGUMENTS, BIN, RANGES, RASTERIZE, PRESENT];
+pub const ALL: [Shader; 10] =
+    [MASK, DEFORM, PROJECT, SORT, ARGUMENTS, BIN, BIN_NUMBERED, RANGES, RASTERIZE, PRESENT];
 
 /// Shaders that need features which not every device has.
 pub const OPTIONAL: [Shader; 1] = [DEFORM_MATRIX];
