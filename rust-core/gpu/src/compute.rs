@@ -12,5 +12,6 @@
 
 pub use crate::kernel::{Binding, Interface, part, whole};
 pub use crate::late_reader::{LateReader, Words};
+pub use crate::layout::counter;
 pub use crate::readback::read;
 pub use crate::stage_pass::{Groups, dispatch};

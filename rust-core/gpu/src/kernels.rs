@@ -6,6 +6,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 use trapeze_scene::ShDegree;
 
 use crate::activate::HarmonicsStorage;
+use crate::differentiable::DifferentiableKernels;
 use crate::kernel::{Binding, Interface};
 use crate::sort::SortKernels;
 use crate::tiles::TileKernels;
@@ -24,6 +25,7 @@ pub(crate) struct Kernels {
     pub deform_interface: Interface,
     deform: Mutex<HashMap<NetworkShape, wgpu::ComputePipeline>>,
     deform_matrix: OnceLock<(Interface, wgpu::ComputePipeline)>,
+    differentiable: OnceLock<DifferentiableKernels>,
 }
 
 /// Bindings of the network's kernels.
@@ -84,6 +86,7 @@ impl Kernels {
             ),
             deform: Mutex::default(),
             deform_matrix: OnceLock::new(),
+            differentiable: OnceLock::new(),
         }
     }
 
@@ -119,6 +122,11 @@ impl Kernels {
             self.deform_interface.pipeline(gpu, "deform", &constants)
         };
         pipelines.entry(shape).or_insert_with(make).clone()
+    }
+
+    /// The passes over trainable parameters.
+    pub(crate) fn differentiable(&self, gpu: &Gpu) -> &DifferentiableKernels {
+        self.differentiable.get_or_init(|| DifferentiableKernels::new(gpu))
     }
 
     /// The network on cooperative matrices; only for devices that have them.

@@ -54,6 +54,16 @@ pub(crate) struct Cluster {
     pub shown: u32,
 }
 
+/// `SplatCount` of common/splat_count.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct SplatCount {
+    pub count: u32,
+    pub capacity: u32,
+    pub stored_degree: u32,
+    pub degree: u32,
+}
+
 /// `SortPass` of sort.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -117,16 +127,21 @@ pub(crate) struct Presentation {
     pub texture: [u32; 2],
 }
 
-/// Indices of common/counters.wgsl.
-pub(crate) mod counter {
-    pub(crate) const VISIBLE: usize = 0;
+/// Indices into the counts of a frame, as in common/counters.wgsl.
+pub mod counter {
+    /// Splats that the frame draws, after culling.
+    pub const VISIBLE: usize = 0;
     pub(crate) const SORTED_ENTRIES: usize = 2;
     pub(crate) const DYNAMIC: usize = 3;
-    pub(crate) const MOST_ENTRIES: usize = 4;
-    pub(crate) const HALTED: usize = 5;
-    pub(crate) const DRAWN_FRAMES: usize = 6;
+    /// Most tile entries of any frame since the host last cleared it; 2³² − 1 stands for more than
+    /// can be counted.
+    pub const MOST_ENTRIES: usize = 4;
+    /// In training: 1 from a frame whose entries did not fit until the host clears it.
+    pub const HALTED: usize = 5;
+    /// In training: frames drawn since the host last cleared it.
+    pub const DRAWN_FRAMES: usize = 6;
     /// Words of the buffer.
-    pub(crate) const COUNT: usize = 8;
+    pub const COUNT: usize = 8;
 }
 
 /// Slots of arguments.wgsl.
@@ -203,6 +218,14 @@ mod tests {
         assert_same_layout!(shaders::PROJECT, Pose, position, log2_opacity, rotation, scale, label,);
         assert_same_layout!(shaders::PROJECT, Window, first, count, padding_1, padding_2);
         assert_same_layout!(shaders::PROJECT, Cluster, color, shown);
+        assert_same_layout!(
+            shaders::PROJECT_PARAMETERS,
+            SplatCount,
+            count,
+            capacity,
+            stored_degree,
+            degree,
+        );
         assert_same_layout!(shaders::SORT, SortPass, shift, count, keys_per_thread, max_blocks,);
         assert_same_layout!(
             shaders::BIN,

@@ -6,6 +6,7 @@ pub mod compute;
 mod context;
 mod deform;
 mod device_report;
+mod differentiable;
 mod error;
 mod kernel;
 mod kernels;
@@ -28,6 +29,9 @@ pub use activate::HarmonicsStorage;
 pub use context::{Created, DeviceProfile, Gpu, GpuOptions};
 pub use deform::NetworkPrecision;
 pub use device_report::DeviceReport;
+pub use differentiable::{
+    DifferentiableRenderer, ForwardSettings, FrameStatus, ImageGradientBuffers, PassTimes,
+};
 pub use error::GpuError;
 pub use parameters::{ParameterArray, ParameterBuffers};
 pub use renderer::{Pick, PickTicket, Renderer, RendererOptions};

@@ -174,6 +174,11 @@ impl ParameterBuffers {
         })
     }
 
+    /// Whether both are the same buffers.
+    pub(crate) fn shares_buffers_with(&self, other: &Self) -> bool {
+        self.arrays().iter().zip(other.arrays()).all(|(a, b)| a.buffer == b.buffer)
+    }
+
     /// Records setting every float to zero.
     pub fn record_clear(&self, encoder: &mut wgpu::CommandEncoder) {
         for array in self.arrays() {

@@ -13,11 +13,7 @@ use crate::{Gpu, GpuError};
 const JACOBIAN_MARGIN: f64 = 0.3;
 
 /// The frame's uniform block. `camera` is relative to the scene's origin.
-pub(crate) fn frame_uniform(
-    camera: &Camera,
-    settings: &FrameSettings,
-    scene: &SceneBuffers,
-) -> Frame {
+pub(crate) fn frame_uniform(camera: &Camera, settings: &FrameSettings, heat_scale: f32) -> Frame {
     let centre = camera.centre();
     let rotation = camera.rotation();
     let row = |i: usize| narrow(rotation.row(i));
@@ -41,7 +37,7 @@ pub(crate) fn frame_uniform(
         image: size.map(|v| v as f32),
         sh_degree: settings.max_sh_degree as u32,
         color_source: color_source_number(settings.color_source),
-        heat_scale: scene.heat_scale,
+        heat_scale,
         zero: 0,
         padding_1: 0,
         padding_2: 0,

@@ -16,7 +16,7 @@ use crate::layout::{argument, counter};
 use crate::project::{ProjectStage, ProjectedBuffers, frame_uniform};
 use crate::readback::{self, Counts};
 use crate::scene_buffers::SceneBuffers;
-use crate::sort::{PairBuffers, SortPlan};
+use crate::sort::{DEPTH_SHIFTS, PairBuffers, SortPlan};
 use crate::stage_pass::{Groups, Stage, begin};
 use crate::surface::ImageView;
 use crate::tiles::{DrawingOrder, EntryBuffers, Target, TargetRequest, max_capacity, tile_count};
@@ -359,7 +359,7 @@ impl Renderer {
 
         self.buffers.select(gpu, settings);
         let camera = camera.relative_to(self.scene.origin);
-        let frame = frame_uniform(&camera, settings, &self.buffers);
+        let frame = frame_uniform(&camera, settings, self.buffers.heat_scale);
         gpu.queue().write_buffer(&self.frame_uniform, 0, bytemuck::bytes_of(&frame));
 
         let timestamps = self
@@ -422,8 +422,6 @@ enum Output {
 
 /// Frames under way whose counts are read.
 const COUNTED_FRAMES: usize = 3;
-/// Lowest bits of the digits of a depth.
-const DEPTH_SHIFTS: [u32; 4] = [0, 8, 16, 24];
 
 #[cfg(test)]
 mod tests;

@@ -54,6 +54,12 @@ pub mod common {
     pub const ENTRIES: &str = wgsl!("common/entries");
     /// Tile entries for the backward pass.
     pub const NUMBERED_ENTRIES: &str = wgsl!("common/numbered_entries");
+    /// From stored parameters to what they stand for.
+    pub const ACTIVATION: &str = wgsl!("common/activation");
+    /// How many trainable splats there are.
+    pub const SPLAT_COUNT: &str = wgsl!("common/splat_count");
+    /// Coefficients of 64 splats in workgroup memory.
+    pub const STAGED_HARMONICS: &str = wgsl!("common/staged_harmonics");
     /// sin and cos of any octave.
     pub const TRIGONOMETRY: &str = wgsl!("common/trigonometry");
     /// The uniform block of the deformation stage.
@@ -63,8 +69,9 @@ pub mod common {
 }
 
 use common::{
-    BLEND, COUNTERS, DEFORM_SPLAT, DEFORMATION, DISPATCH, ENTRIES, FRAME, HARMONICS,
-    NUMBERED_ENTRIES, NUMBERS, PROJECTION, REGION, SCAN, TRIGONOMETRY,
+    ACTIVATION, BLEND, COUNTERS, DEFORM_SPLAT, DEFORMATION, DISPATCH, ENTRIES, FRAME, HARMONICS,
+    NUMBERED_ENTRIES, NUMBERS, PROJECTION, REGION, SCAN, SPLAT_COUNT, STAGED_HARMONICS,
+    TRIGONOMETRY,
 };
 
 /// Which splats move.
@@ -129,9 +136,97 @@ pub const RASTERIZE: Shader =
 /// Onto the screen.
 pub const PRESENT: Shader = Shader { name: "present", parts: &[wgsl!("present")] };
 
+/// World → image, from stored parameters.
+pub const PROJECT_PARAMETERS: Shader = Shader {
+    name: "project_parameters",
+    parts: &[
+        DISPATCH,
+        FRAME,
+        NUMBERS,
+        PROJECTION,
+        ACTIVATION,
+        SPLAT_COUNT,
+        wgsl!("project_parameters"),
+    ],
+};
+/// Colours, from stored parameters.
+pub const COLOR_PARAMETERS: Shader = Shader {
+    name: "color_parameters",
+    parts: &[
+        DISPATCH,
+        FRAME,
+        NUMBERS,
+        PROJECTION,
+        HARMONICS,
+        SPLAT_COUNT,
+        STAGED_HARMONICS,
+        wgsl!("color_parameters"),
+    ],
+};
+/// The splat of each sorted entry.
+pub const RESOLVE_ENTRIES: Shader =
+    Shader { name: "resolve_entries", parts: &[DISPATCH, COUNTERS, wgsl!("resolve_entries")] };
+/// What a gradient by depth says about each pixel's sums.
+pub const DEPTH_GRADIENT: Shader =
+    Shader { name: "depth_gradient", parts: &[DISPATCH, REGION, wgsl!("depth_gradient")] };
+/// The mirror of blending.
+pub const RASTERIZE_BACKWARD: Shader = Shader {
+    name: "rasterize_backward",
+    parts: &[DISPATCH, REGION, BLEND, wgsl!("rasterize_backward")],
+};
+/// From the sums of entries to those of splats.
+pub const SUM_SLOTS: Shader =
+    Shader { name: "sum_slots", parts: &[DISPATCH, COUNTERS, SPLAT_COUNT, wgsl!("sum_slots")] };
+/// The mirror of the projection.
+pub const PROJECT_BACKWARD: Shader = Shader {
+    name: "project_backward",
+    parts: &[
+        DISPATCH,
+        FRAME,
+        NUMBERS,
+        PROJECTION,
+        ACTIVATION,
+        SPLAT_COUNT,
+        wgsl!("project_backward"),
+    ],
+};
+/// The mirror of the colours.
+pub const COLOR_BACKWARD: Shader = Shader {
+    name: "color_backward",
+    parts: &[
+        DISPATCH,
+        FRAME,
+        NUMBERS,
+        PROJECTION,
+        HARMONICS,
+        ACTIVATION,
+        SPLAT_COUNT,
+        STAGED_HARMONICS,
+        wgsl!("color_backward"),
+    ],
+};
+
 /// Every shader that any device can run.
-pub const ALL: [Shader; 10] =
-    [MASK, DEFORM, PROJECT, SORT, ARGUMENTS, BIN, BIN_NUMBERED, RANGES, RASTERIZE, PRESENT];
+pub const ALL: [Shader; 18] = [
+    MASK,
+    DEFORM,
+    PROJECT,
+    SORT,
+    ARGUMENTS,
+    BIN,
+    BIN_NUMBERED,
+    RANGES,
+    RASTERIZE,
+    PROJECT_PARAMETERS,
+    COLOR_PARAMETERS,
+    RESOLVE_ENTRIES,
+    DEPTH_GRADIENT,
+    RASTERIZE_BACKWARD,
+    SUM_SLOTS,
+    PROJECT_BACKWARD,
+    COLOR_BACKWARD,
+    PRESENT,
+];
 
 /// Shaders that need features which not every device has.
 pub const OPTIONAL: [Shader; 1] = [DEFORM_MATRIX];

@@ -47,12 +47,22 @@ pub(crate) fn begin<'a>(
         Stage::Bin => "bin",
         Stage::Rasterize => "rasterize",
     };
+    begin_pass(encoder, label, stage as u32, timestamps)
+}
+
+/// Begins a pass by its place among those that are timed.
+pub(crate) fn begin_pass<'a>(
+    encoder: &'a mut wgpu::CommandEncoder,
+    label: &str,
+    stage: u32,
+    timestamps: Option<&wgpu::QuerySet>,
+) -> wgpu::ComputePass<'a> {
     encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
         label: Some(label),
         timestamp_writes: timestamps.map(|query_set| wgpu::ComputePassTimestampWrites {
             query_set,
-            beginning_of_pass_write_index: Some(2 * stage as u32),
-            end_of_pass_write_index: Some(2 * stage as u32 + 1),
+            beginning_of_pass_write_index: Some(2 * stage),
+            end_of_pass_write_index: Some(2 * stage + 1),
         }),
     })
 }

@@ -12,15 +12,15 @@ use crate::{Gpu, GpuError, shaders};
 #[derive(Debug)]
 pub(crate) struct TileKernels {
     arguments: Interface,
-    drawing_order: wgpu::ComputePipeline,
-    entries: wgpu::ComputePipeline,
+    pub drawing_order: wgpu::ComputePipeline,
+    pub entries: wgpu::ComputePipeline,
     pub network: wgpu::ComputePipeline,
     bin: Interface,
     count: wgpu::ComputePipeline,
     emit: wgpu::ComputePipeline,
-    ranges_interface: Interface,
-    ranges: wgpu::ComputePipeline,
-    rasterize_interface: Interface,
+    pub ranges_interface: Interface,
+    pub ranges: wgpu::ComputePipeline,
+    pub rasterize_interface: Interface,
     /// Colour and alpha alone.
     rasterize: wgpu::ComputePipeline,
     /// With depths, top contributor and its label.
@@ -70,6 +70,31 @@ impl TileKernels {
             rasterize_interface: rasterize,
         }
     }
+
+    /// The blending pipeline, with depths and top contributor or without.
+    pub(crate) fn blending(&self, layers: bool) -> &wgpu::ComputePipeline {
+        if layers { &self.rasterize_layers } else { &self.rasterize }
+    }
+
+    /// Binds the kernel that computes the sizes of later dispatches.
+    pub(crate) fn bind_arguments(
+        &self,
+        gpu: &Gpu,
+        region: wgpu::BufferBinding<'_>,
+        order: &DrawingOrder,
+    ) -> wgpu::BindGroup {
+        self.arguments.bind(
+            gpu,
+            &[
+                region,
+                whole(&order.sizes),
+                whole(&order.counts),
+                whole(&order.digit_counts),
+                whole(&order.group_entries),
+                whole(&order.arguments),
+            ],
+        )
+    }
 }
 
 /// What the tile stages read of the stages before: per scene.
@@ -81,7 +106,7 @@ pub(crate) struct DrawingOrder {
     pub counts: wgpu::Buffer,
     pub arguments: wgpu::Buffer,
     pub sizes: wgpu::Buffer,
-    group_entries: wgpu::Buffer,
+    pub group_entries: wgpu::Buffer,
 }
 
 /// Splats that one workgroup of the binning kernel takes.
@@ -142,7 +167,7 @@ impl EntryBuffers {
     }
 
     /// The sort for regions of so many tiles.
-    fn sort(&self, tiles: u32) -> &SortPlan {
+    pub(crate) fn sort(&self, tiles: u32) -> &SortPlan {
         if tiles <= 1 << 16 { &self.sort_two } else { &self.sort_three }
     }
 }
@@ -345,17 +370,7 @@ impl Target {
         }
         let region = || part(&self.region_uniforms, 0, size_of::<Region>() as u64);
         let pairs = &entries.pairs;
-        let arguments = kernels.arguments.bind(
-            gpu,
-            &[
-                region(),
-                whole(&order.sizes),
-                whole(&order.counts),
-                whole(&order.digit_counts),
-                whole(&order.group_entries),
-                whole(&order.arguments),
-            ],
-        );
+        let arguments = kernels.bind_arguments(gpu, region(), order);
         let bin = kernels.bin.bind(
             gpu,
             &[
@@ -476,8 +491,7 @@ impl Target {
                 dispatch(&mut pass, Groups::Direct((rect.count() + 1).div_ceil(256)));
             }
             let mut pass = begin(encoder, Stage::Rasterize, timestamps);
-            let pipeline = if layers { &kernels.rasterize_layers } else { &kernels.rasterize };
-            pass.set_pipeline(pipeline);
+            pass.set_pipeline(kernels.blending(layers));
             pass.set_bind_group(0, &bound.windows[i].rasterize[sorted], &offset);
             dispatch(&mut pass, order.groups(argument::RASTERIZE));
         }

@@ -22,31 +22,37 @@ pub struct StageTimes {
     pub total: Duration,
 }
 
-const QUERIES: u32 = 2 * STAGES as u32;
-
 /// Queries at the start and the end of each stage.
 #[derive(Debug)]
 pub(crate) struct Timer {
     queries: wgpu::QuerySet,
     resolved: wgpu::Buffer,
     nanoseconds: f32,
+    /// Two per stage.
+    count: u32,
 }
 
 impl Timer {
-    /// `None` where the device has no timestamps.
+    /// For the stages of a frame; `None` where the device has no timestamps.
     pub(crate) fn new(gpu: &Gpu) -> Result<Option<Self>, GpuError> {
+        Self::of_stages(gpu, STAGES as u32)
+    }
+
+    /// For so many stages.
+    pub(crate) fn of_stages(gpu: &Gpu, stages: u32) -> Result<Option<Self>, GpuError> {
         if !gpu.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
             return Ok(None);
         }
+        let count = 2 * stages;
         let queries = gpu.device().create_query_set(&wgpu::QuerySetDescriptor {
             label: Some("stages"),
             ty: wgpu::QueryType::Timestamp,
-            count: QUERIES,
+            count,
         });
         let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
-        let resolved = gpu.buffer("timestamps", u64::from(QUERIES) * 8, usage)?;
+        let resolved = gpu.buffer("timestamps", u64::from(count) * 8, usage)?;
         let nanoseconds = gpu.queue().get_timestamp_period();
-        Ok(Some(Self { queries, resolved, nanoseconds }))
+        Ok(Some(Self { queries, resolved, nanoseconds, count }))
     }
 
     pub(crate) fn queries(&self) -> &wgpu::QuerySet {
@@ -54,7 +60,7 @@ impl Timer {
     }
 
     pub(crate) fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
-        encoder.resolve_query_set(&self.queries, 0..QUERIES, &self.resolved, 0);
+        encoder.resolve_query_set(&self.queries, 0..self.count, &self.resolved, 0);
     }
 
     /// Resolves the deformation stage alone, when nothing else was recorded.
@@ -73,9 +79,15 @@ impl Timer {
         Some(Duration::from_nanos((ticks * f64::from(self.nanoseconds)) as u64))
     }
 
+    /// Time of each stage that was resolved; `None` when a clock has run backwards.
+    pub(crate) fn read_stages(&self, gpu: &Gpu) -> Result<Option<Vec<Duration>>, GpuError> {
+        let ticks: Vec<u64> = readback::read(gpu, &self.resolved, u64::from(self.count))?;
+        Ok(ticks.chunks_exact(2).map(|pair| self.between(pair[0], pair[1])).collect())
+    }
+
     /// Times of the last frame; `None` when a clock has run backwards.
     pub(crate) fn read(&self, gpu: &Gpu) -> Result<Option<StageTimes>, GpuError> {
-        let ticks: Vec<u64> = readback::read(gpu, &self.resolved, u64::from(QUERIES))?;
+        let ticks: Vec<u64> = readback::read(gpu, &self.resolved, u64::from(self.count))?;
         let between = |from, to| self.between(from, to);
         let times = || {
             Some(StageTimes {

@@ -7,6 +7,9 @@ pub(crate) use plan::{PairBuffers, SortPlan, keys_per_thread};
 use crate::kernel::{Binding, Interface};
 use crate::{Gpu, shaders};
 
+/// Lowest bits of the digits of a depth.
+pub(crate) const DEPTH_SHIFTS: [u32; 4] = [0, 8, 16, 24];
+
 /// Pipelines of the sort.
 #[derive(Debug)]
 pub(crate) struct SortKernels {
