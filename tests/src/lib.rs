@@ -17,7 +17,8 @@ pub use compare::{Comparison, MARGIN, TOLERANCE, compare};
 pub use conditioning::rounding_bound;
 pub use gpu::{gpu, render_gpu};
 pub use gradients::{
-    GRADIENT_TOLERANCE, assert_finite_gradients, assert_gradients_agree, gradients,
+    GRADIENT_TOLERANCE, assert_finite_gradients, assert_gradients_agree, assert_gradients_follow,
+    cpu_gradients, gpu_gradients, gradient_weights, gradients,
 };
 pub use image::{
     assert_agrees, assert_agrees_within, assert_close_color, assert_finite, assert_same_color,

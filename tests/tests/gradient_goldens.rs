@@ -6,9 +6,11 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use glam::DMat4;
-use trapeze_cpu::{DifferentiableRenderer, ImageGradient, RendererOptions, reference};
+use trapeze_cpu::{ImageGradient, reference};
 use trapeze_formats::{NpyArray, load_scene, read_npz};
-use trapeze_scene::{Camera, FrameSettings, Scene, Splats};
+use trapeze_gpu::DeviceProfile;
+use trapeze_scene::{Camera, FrameSettings, Scene};
+use trapeze_tests::{cpu_gradients, gpu, gpu_gradients};
 
 const SIZE: (u32, u32) = (480, 320);
 
@@ -96,23 +98,25 @@ fn assert_gradients(name: &str) {
     let color = weights();
     let gradient = ImageGradient { color: &color, expected_depth: None };
 
-    let mut renderer = DifferentiableRenderer::new(RendererOptions::default());
-    renderer.forward(scene, &camera, &settings).unwrap();
-    let mut fast = Splats::default();
-    renderer.backward(scene, &gradient, &mut fast).unwrap();
     let indices = golden.indices();
     let gather = |numbers: &dyn Fn(usize) -> Vec<f64>| -> Vec<f64> {
         indices.iter().flat_map(|&i| numbers(i)).collect()
     };
+    let mut backends = vec![("CPU", cpu_gradients(scene, &camera, &settings, &gradient))];
+    if let Some(gpu) = gpu(DeviceProfile::Full) {
+        backends.push(("GPU", gpu_gradients(&gpu, scene, &camera, &settings, &gradient)));
+    }
     let wide = |values: &[f32]| values.iter().map(|&v| f64::from(v)).collect::<Vec<f64>>();
-    let check = |array: &str, numbers: &dyn Fn(usize) -> Vec<f64>| {
-        golden.assert_group("CPU", array, &gather(numbers));
-    };
-    check("means", &|i| wide(&fast.positions[i]));
-    check("quats", &|i| wide(&fast.rotations[i]));
-    check("log_scales", &|i| wide(&fast.log_scales[i]));
-    check("opacity_logits", &|i| vec![f64::from(fast.opacity_logits[i])]);
-    check("sh", &|i| [wide(&fast.sh_dc[i]), wide(fast.sh_rest_of(i))].concat());
+    for (path, found) in &backends {
+        let check = |array: &str, numbers: &dyn Fn(usize) -> Vec<f64>| {
+            golden.assert_group(path, array, &gather(numbers));
+        };
+        check("means", &|i| wide(&found.positions[i]));
+        check("quats", &|i| wide(&found.rotations[i]));
+        check("log_scales", &|i| wide(&found.log_scales[i]));
+        check("opacity_logits", &|i| vec![f64::from(found.opacity_logits[i])]);
+        check("sh", &|i| [wide(&found.sh_dc[i]), wide(found.sh_rest_of(i))].concat());
+    }
 
     let exact = reference::gradients(scene, &camera, &settings, &gradient).splats;
     let coefficients = scene.splats.sh_degree.coefficients();

@@ -15,3 +15,4 @@ pub use crate::late_reader::{LateReader, Words};
 pub use crate::layout::counter;
 pub use crate::readback::read;
 pub use crate::stage_pass::{Groups, dispatch};
+pub use wgpu;

@@ -12,8 +12,10 @@ fn channels_below_zero_have_no_gradient() {
     let settings = FrameSettings::default();
     let found =
         assert_gradients_agree(&scene, &camera_at_origin(32, 24), &settings, GRADIENT_TOLERANCE);
-    assert_eq!((found.sh_dc[0][0], found.sh_dc[0][2]), (0.0, 0.0));
-    assert!(found.sh_dc[0][1] != 0.0);
+    for found in found {
+        assert_eq!((found.sh_dc[0][0], found.sh_dc[0][2]), (0.0, 0.0));
+        assert!(found.sh_dc[0][1] != 0.0);
+    }
 }
 
 #[test]
@@ -32,6 +34,6 @@ fn coefficients_that_are_no_numbers_leave_all_other_gradients_finite() {
     scene.splats.sh_rest[5] = f32::NAN;
     scene.splats.sh_rest[20] = f32::INFINITY;
     scene.splats.sh_dc[7] = [f32::NEG_INFINITY, f32::NAN, f32::INFINITY];
-    let found = gradients(&scene, &cloud_camera(48, 36), &FrameSettings::default());
-    assert_finite_gradients(&found);
+    let all = gradients(&scene, &cloud_camera(48, 36), &FrameSettings::default());
+    all.iter().for_each(assert_finite_gradients);
 }

@@ -1,8 +1,12 @@
 //! Scenes with poison in any parameter, and image gradients of zero.
 
-use trapeze_cpu::{DifferentiableRenderer, ImageGradient, RendererOptions};
-use trapeze_scene::{FrameSettings, ShDegree, Splats};
-use trapeze_tests::{Random, assert_finite_gradients, cloud, cloud_camera, gradients};
+use trapeze_cpu::ImageGradient;
+use trapeze_gpu::DeviceProfile;
+use trapeze_scene::{FrameSettings, ShDegree};
+use trapeze_tests::{
+    Random, assert_finite_gradients, cloud, cloud_camera, cpu_gradients, gpu, gpu_gradients,
+    gradients,
+};
 
 const POISON: [f32; 10] =
     [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -1e30, 1e-40, -0.0, 1e20, -88.0, 88.0];
@@ -29,19 +33,22 @@ fn two_hundred_poisoned_scenes_have_finite_gradients() {
             }
         }
         let camera = cloud_camera(40 + seed as u32 % 30, 33);
-        assert_finite_gradients(&gradients(&scene, &camera, &FrameSettings::default()));
+        let all = gradients(&scene, &camera, &FrameSettings::default());
+        all.iter().for_each(assert_finite_gradients);
     }
 }
 
 #[test]
 fn a_gradient_of_zero_stays_zero() {
-    let scene = cloud(50, ShDegree::One, 3);
-    let mut renderer = DifferentiableRenderer::new(RendererOptions::default());
-    renderer.forward(&scene, &cloud_camera(30, 20), &FrameSettings::default()).unwrap();
-    let mut found = Splats::default();
+    let (scene, camera) = (cloud(50, ShDegree::One, 3), cloud_camera(30, 20));
+    let settings = FrameSettings::default();
     let gradient = ImageGradient { color: &[[0.0; 4]; 600], expected_depth: None };
-    renderer.backward(&scene, &gradient, &mut found).unwrap();
+    let mut all = vec![cpu_gradients(&scene, &camera, &settings, &gradient)];
+    let gpu = gpu(DeviceProfile::Full);
+    all.extend(gpu.map(|gpu| gpu_gradients(&gpu, &scene, &camera, &settings, &gradient)));
     let zero = |values: &[f32]| values.iter().all(|&g| g == 0.0);
-    assert!(zero(found.positions.as_flattened()) && zero(&found.opacity_logits));
-    assert!(zero(found.rotations.as_flattened()) && zero(&found.sh_rest));
+    for found in all {
+        assert!(zero(found.positions.as_flattened()) && zero(&found.opacity_logits));
+        assert!(zero(found.rotations.as_flattened()) && zero(&found.sh_rest));
+    }
 }
