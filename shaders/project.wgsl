@@ -45,8 +45,9 @@ struct Cluster {
 
 /// SH degree in the buffer.
 override STORED_SH_DEGREE: u32 = 0u;
-/// Whether coefficients are stored as half floats, two to a word.
-override HALF_HARMONICS: bool = false;
+/// How coefficients are stored. 0: floats; 1: half floats, two to a word; 2: band 0 and a step for
+/// each higher band as half floats, then bytes, four to a word, that count steps.
+override HARMONICS_STORAGE: u32 = 0u;
 
 @compute @workgroup_size(256)
 fn project(
@@ -109,16 +110,45 @@ fn motion_heat(relative: f32) -> vec3<f32> {
 /// Word `index` of a splat's coefficients.
 fn harmonics_word(local: u32, index: u32) -> u32 {
     let coefficients = 3u * (STORED_SH_DEGREE + 1u) * (STORED_SH_DEGREE + 1u);
-    let words = select(coefficients, (coefficients + 1u) / 2u, HALF_HARMONICS);
+    var words = coefficients;
+    if (HARMONICS_STORAGE == 1u) {
+        words = (coefficients + 1u) / 2u;
+    } else if (HARMONICS_STORAGE == 2u) {
+        // (coefficients − 3) / 4, rounded up.
+        words = HEADER_WORDS + coefficients / 4u;
+    }
     return harmonics[((local / 32u) * words + index) * 32u + local % 32u];
+}
+
+/// Words of band 0 and of the steps.
+override HEADER_WORDS: u32 = (STORED_SH_DEGREE + 4u) / 2u;
+
+/// Half float `index` of a splat.
+fn half_coefficient(local: u32, index: u32) -> f32 {
+    return unpack2x16float(harmonics_word(local, index / 2u))[index % 2u];
+}
+
+/// Coefficient `index` ≥ 3 in steps of its band: −127 … 127, or −128 where it is not a number.
+fn byte_coefficient(local: u32, index: u32) -> f32 {
+    let word = harmonics_word(local, HEADER_WORDS + (index - 3u) / 4u);
+    let steps = bitcast<i32>(word << (24u - 8u * ((index - 3u) % 4u))) >> 24u;
+    if (steps == -128) {
+        return bitcast<f32>(0x7fc00000u + frame.zero);
+    }
+    // Bands 1, 2 and 3 start at coefficients 1, 4 and 9 of each channel.
+    let band = 1u + u32(index >= 12u) + u32(index >= 27u);
+    return f32(steps) * half_coefficient(local, 2u + band);
 }
 
 /// Coefficient `index` of one channel after the other: r g b of band 0, r g b of the next, ….
 fn coefficient(local: u32, index: u32) -> f32 {
-    if (HALF_HARMONICS) {
-        return unpack2x16float(harmonics_word(local, index / 2u))[index % 2u];
+    if (HARMONICS_STORAGE == 0u) {
+        return bitcast<f32>(harmonics_word(local, index));
     }
-    return bitcast<f32>(harmonics_word(local, index));
+    if (HARMONICS_STORAGE == 1u || index < 3u) {
+        return half_coefficient(local, index);
+    }
+    return byte_coefficient(local, index);
 }
 
 fn coefficients(local: u32, k: u32) -> vec3<f32> {

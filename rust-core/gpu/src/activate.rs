@@ -3,7 +3,7 @@
 //! The rules for degenerate values are those of the f64 reference (`trapeze_cpu::reference`), and
 //! a test compares every value with it.
 
-use trapeze_scene::{Scene, Splats, sigmoid};
+use trapeze_scene::{Scene, sigmoid};
 
 use crate::layout::Pose;
 
@@ -45,66 +45,11 @@ fn unit_quaternion(q: [f32; 4]) -> [f32; 4] {
     if norm.is_finite() && norm > 0.0 { q.map(|c| (c / norm) as f32) } else { [1.0, 0.0, 0.0, 0.0] }
 }
 
-/// How SH coefficients are stored on the GPU.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum HarmonicsStorage {
-    /// 32-bit floats, as in the file.
-    #[default]
-    Single,
-    /// 16-bit floats: half the memory; colours are off by up to 2⁻¹¹ of the coefficients.
-    Half,
-}
-
-/// Splats whose coefficients are interleaved.
-pub(crate) const HARMONICS_GROUP: usize = 32;
-
-/// Words that a splat's coefficients take.
-pub(crate) fn harmonics_words(coefficients: usize, storage: HarmonicsStorage) -> usize {
-    match storage {
-        HarmonicsStorage::Single => 3 * coefficients,
-        HarmonicsStorage::Half => (3 * coefficients).div_ceil(2),
-    }
-}
-
-/// Coefficients of bands 0…degree in groups of 32 splats, word-major within a group; `words` is
-/// called with each group in turn.
-pub(crate) fn pack_harmonics(
-    splats: &Splats,
-    coefficients: usize,
-    storage: HarmonicsStorage,
-) -> Vec<u32> {
-    let words = harmonics_words(coefficients, storage);
-    let groups = splats.len().div_ceil(HARMONICS_GROUP);
-    let mut packed = vec![0; groups * HARMONICS_GROUP * words];
-    let value = |i: usize, index: usize| -> f32 {
-        if index < 3 {
-            splats.sh_dc[i][index]
-        } else if index < 3 * coefficients {
-            splats.sh_rest_of(i)[index - 3]
-        } else {
-            0.0
-        }
-    };
-    for i in 0..splats.len() {
-        let group = (i / HARMONICS_GROUP) * words;
-        for word in 0..words {
-            let bits = match storage {
-                HarmonicsStorage::Single => value(i, word).to_bits(),
-                HarmonicsStorage::Half => {
-                    let half = |index| u32::from(half::f16::from_f32(value(i, index)).to_bits());
-                    half(2 * word) | half(2 * word + 1) << 16
-                }
-            };
-            packed[(group + word) * HARMONICS_GROUP + i % HARMONICS_GROUP] = bits;
-        }
-    }
-    packed
-}
-
 #[cfg(test)]
 mod tests {
     use trapeze_cpu::deform::Deformed;
     use trapeze_cpu::reference::deform::canonical_pose;
+    use trapeze_scene::Splats;
 
     use super::*;
 
@@ -156,33 +101,5 @@ mod tests {
         assert!((log2_opacity(logit(1.001 / 255.0)) + 255f32.log2()).abs() < 2e-3);
         assert_eq!(log2_opacity(f32::NAN), NEVER_DRAWN);
         assert_eq!(log2_opacity(f32::INFINITY), 0.0);
-    }
-
-    #[test]
-    fn harmonics_keep_their_place_in_either_storage() {
-        let n = 70;
-        let splats = Splats {
-            positions: vec![[0.0; 3]; n],
-            sh_dc: (0..n).map(|i| [i as f32, i as f32 + 0.25, i as f32 + 0.5]).collect(),
-            sh_rest: (0..n * 9).map(|i| i as f32 * 0.5).collect(),
-            sh_degree: trapeze_scene::ShDegree::One,
-            ..Splats::default()
-        };
-        let single = pack_harmonics(&splats, 4, HarmonicsStorage::Single);
-        let half = pack_harmonics(&splats, 4, HarmonicsStorage::Half);
-        for i in 0..n {
-            for index in 0..12 {
-                let exact = if index < 3 {
-                    splats.sh_dc[i][index]
-                } else {
-                    splats.sh_rest_of(i)[index - 3]
-                };
-                let word = single[((i / 32) * 12 + index) * 32 + i % 32];
-                assert_eq!(f32::from_bits(word), exact);
-                let word = half[((i / 32) * 6 + index / 2) * 32 + i % 32];
-                let bits = (word >> (16 * (index % 2))) as u16;
-                assert_eq!(half::f16::from_bits(bits).to_f32(), exact);
-            }
-        }
     }
 }

@@ -41,6 +41,8 @@ pub struct GpuOptions {
 pub struct Created {
     /// Buffers.
     pub buffers: u64,
+    /// Their bytes.
+    pub buffer_bytes: u64,
     /// Bind groups.
     pub bind_groups: u64,
     /// Pipelines.
@@ -52,6 +54,7 @@ pub struct Created {
 #[derive(Debug, Default)]
 struct Counts {
     buffers: AtomicU64,
+    buffer_bytes: AtomicU64,
     bind_groups: AtomicU64,
     pipelines: AtomicU64,
     waits: AtomicU64,
@@ -197,6 +200,7 @@ impl Gpu {
         let read = |count: &AtomicU64| count.load(Ordering::Relaxed);
         Created {
             buffers: read(&counts.buffers),
+            buffer_bytes: read(&counts.buffer_bytes),
             bind_groups: read(&counts.bind_groups),
             pipelines: read(&counts.pipelines),
             waits: read(&counts.waits),
@@ -318,7 +322,7 @@ impl Gpu {
         if size > have {
             return Err(GpuError::OutOfMemory { what: label, need: size, have });
         }
-        self.inner.created.buffers.fetch_add(1, Ordering::Relaxed);
+        self.count_buffer(size);
         let scope = self.device().push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let buffer = self.device().create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
@@ -380,12 +384,17 @@ impl Gpu {
 
     /// A uniform buffer that holds `data` and can be written to.
     pub fn uniform_of(&self, label: &'static str, data: &[u8]) -> wgpu::Buffer {
-        self.inner.created.buffers.fetch_add(1, Ordering::Relaxed);
+        self.count_buffer(data.len() as u64);
         self.device().create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some(label),
             contents: data,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
         })
+    }
+
+    fn count_buffer(&self, bytes: u64) {
+        self.inner.created.buffers.fetch_add(1, Ordering::Relaxed);
+        self.inner.created.buffer_bytes.fetch_add(bytes, Ordering::Relaxed);
     }
 
     pub(crate) fn count_bind_group(&self) {

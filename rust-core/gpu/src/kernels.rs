@@ -5,8 +5,8 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 
 use trapeze_scene::ShDegree;
 
-use crate::activate::HarmonicsStorage;
 use crate::differentiable::DifferentiableKernels;
+use crate::harmonics::HarmonicsStorage;
 use crate::kernel::{Binding, Interface};
 use crate::sort::SortKernels;
 use crate::tiles::TileKernels;
@@ -21,7 +21,7 @@ pub(crate) struct Kernels {
     pub mask_interface: Interface,
     pub mask: wgpu::ComputePipeline,
     pub project_interface: Interface,
-    project: Mutex<HashMap<(ShDegree, bool), wgpu::ComputePipeline>>,
+    project: Mutex<HashMap<(ShDegree, HarmonicsStorage), wgpu::ComputePipeline>>,
     pub deform_interface: Interface,
     deform: Mutex<HashMap<NetworkShape, wgpu::ComputePipeline>>,
     deform_matrix: OnceLock<(Interface, wgpu::ComputePipeline)>,
@@ -97,16 +97,15 @@ impl Kernels {
         degree: ShDegree,
         storage: HarmonicsStorage,
     ) -> wgpu::ComputePipeline {
-        let half = storage == HarmonicsStorage::Half;
         let mut pipelines = self.project.lock().unwrap_or_else(PoisonError::into_inner);
         let make = || {
             let constants = [
                 ("STORED_SH_DEGREE", f64::from(degree as u32)),
-                ("HALF_HARMONICS", f64::from(u8::from(half))),
+                ("HARMONICS_STORAGE", f64::from(storage as u32)),
             ];
             self.project_interface.pipeline(gpu, "project", &constants)
         };
-        pipelines.entry((degree, half)).or_insert_with(make).clone()
+        pipelines.entry((degree, storage)).or_insert_with(make).clone()
     }
 
     /// The network of this shape.

@@ -8,10 +8,12 @@ mod deform;
 mod device_report;
 mod differentiable;
 mod error;
+mod harmonics;
 mod kernel;
 mod kernels;
 mod late_reader;
 mod layout;
+mod memory;
 mod parameters;
 mod project;
 mod readback;
@@ -25,7 +27,6 @@ mod surface;
 mod tiles;
 mod timing;
 
-pub use activate::HarmonicsStorage;
 pub use context::{Created, DeviceProfile, Gpu, GpuOptions};
 pub use deform::NetworkPrecision;
 pub use device_report::DeviceReport;
@@ -33,6 +34,8 @@ pub use differentiable::{
     DifferentiableRenderer, ForwardSettings, FrameStatus, ImageGradientBuffers, PassTimes,
 };
 pub use error::GpuError;
+pub use harmonics::HarmonicsStorage;
+pub use memory::{MemoryPlan, MemoryRequest, PlannedBuffer, SceneSize};
 pub use parameters::{ParameterArray, ParameterBuffers};
 pub use renderer::{Pick, PickTicket, Renderer, RendererOptions};
 pub use surface::{Presented, SurfaceOptions, WindowSurface};

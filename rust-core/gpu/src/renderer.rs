@@ -6,16 +6,17 @@ mod pick;
 use std::sync::Arc;
 
 pub use pick::{Pick, PickTicket};
-use trapeze_scene::{Camera, Frame, FrameSettings, Scene, ShDegree};
+use trapeze_scene::{Camera, Frame, FrameSettings, NO_SPLAT, Scene, ShDegree};
 
-use crate::activate::HarmonicsStorage;
 use crate::deform::{DeformStage, DeformWork, NetworkPrecision};
+use crate::harmonics::HarmonicsStorage;
 use crate::kernels::Kernels;
 use crate::late_reader::{LateReader, Words};
 use crate::layout::{argument, counter};
+use crate::memory::{initial_entries, kept_splats, part_of};
 use crate::project::{ProjectStage, ProjectedBuffers, frame_uniform};
 use crate::readback::{self, Counts};
-use crate::scene_buffers::SceneBuffers;
+use crate::scene_buffers::{SceneBuffers, heat_scale};
 use crate::sort::{DEPTH_SHIFTS, PairBuffers, SortPlan};
 use crate::stage_pass::{Groups, Stage, begin};
 use crate::surface::ImageView;
@@ -36,6 +37,11 @@ pub struct RendererOptions {
     pub precision: NetworkPrecision,
     /// Tile entries to make room for at first; the buffers grow when a frame needs more.
     pub initial_entries: Option<u32>,
+    /// Tile entries to make room for at most, when fewer than the device allows; frames that need
+    /// more are drawn in regions.
+    pub max_entries: Option<u32>,
+    /// Splats to keep when the scene has more: those that contribute most.
+    pub max_splats: Option<u32>,
 }
 
 impl Default for RendererOptions {
@@ -45,6 +51,8 @@ impl Default for RendererOptions {
             max_sh_degree: ShDegree::Three,
             precision: NetworkPrecision::default(),
             initial_entries: None,
+            max_entries: None,
+            max_splats: None,
         }
     }
 }
@@ -59,6 +67,8 @@ pub struct Renderer {
     gpu: Gpu,
     scene: Arc<Scene>,
     options: RendererOptions,
+    /// Indices in the scene of the splats on the device, when they are not all.
+    kept: Option<Vec<u32>>,
     buffers: SceneBuffers,
     frame_uniform: wgpu::Buffer,
     deform: Option<DeformStage>,
@@ -96,12 +106,18 @@ impl Renderer {
         scene: Arc<Scene>,
         options: RendererOptions,
     ) -> Result<Self, GpuError> {
-        let buffers = SceneBuffers::upload(gpu, &scene, options.max_sh_degree, options.harmonics)?;
+        scene.validate()?;
+        let kept = kept_splats(&scene, &options);
+        let reduced = kept.as_ref().map(|kept| part_of(&scene, kept));
+        let shown: &Scene = reduced.as_ref().unwrap_or(&scene);
+        let mut buffers =
+            SceneBuffers::upload(gpu, shown, options.max_sh_degree, options.harmonics)?;
+        buffers.heat_scale = heat_scale(&scene);
         let splats = buffers.count;
         let counts = gpu.storage("counts", 4 * counter::COUNT as u64)?;
-        let deform = match &scene.deformation {
+        let deform = match &shown.deformation {
             Some(network) => {
-                Some(DeformStage::new(gpu, &scene, network, &buffers, &counts, options.precision)?)
+                Some(DeformStage::new(gpu, shown, network, &buffers, &counts, options.precision)?)
             }
             None => None,
         };
@@ -138,14 +154,12 @@ impl Renderer {
             network_splats,
             counts,
         )?;
-        let capacity = options
-            .initial_entries
-            .unwrap_or(splats.saturating_mul(4).saturating_add(1 << 16))
-            .clamp(1, max_capacity(gpu));
+        let capacity = initial_entries(splats, &options).min(max_capacity(gpu));
         Ok(Self {
             gpu: gpu.clone(),
             scene,
             options,
+            kept,
             frame_uniform,
             deform,
             project,
@@ -221,7 +235,7 @@ impl Renderer {
                 frame.median_depth = values.iter().map(|v| f32::from_bits(v[1])).collect();
             }
             if settings.top_contributor {
-                frame.top_contributor = values.iter().map(|v| v[2]).collect();
+                frame.top_contributor = values.iter().map(|v| self.index_in_scene(v[2])).collect();
             }
         }
         Ok(frame)
@@ -273,6 +287,14 @@ impl Renderer {
         Ok(most)
     }
 
+    /// Index in the scene of a splat on the device; [`NO_SPLAT`] stays what it is.
+    fn index_in_scene(&self, splat: u32) -> u32 {
+        match &self.kept {
+            Some(kept) => kept.get(splat as usize).copied().unwrap_or(NO_SPLAT),
+            None => splat,
+        }
+    }
+
     /// Draws until the frame has fitted into the buffers.
     fn draw_until_complete(
         &mut self,
@@ -303,7 +325,7 @@ impl Renderer {
         if need <= capacity {
             return Ok(false);
         }
-        let most = max_capacity(&self.gpu);
+        let most = max_capacity(&self.gpu).min(self.options.max_entries.unwrap_or(u32::MAX));
         if need > most {
             // Regions of the image, one after the other.
             let times = need.div_ceil(most).max(2);
@@ -322,6 +344,7 @@ impl Renderer {
             self.main.unbind();
             self.pick.target.unbind();
             let kernels = &self.gpu.kernels().sort;
+            self.entries = EntryBuffers::new(&self.gpu, kernels, &self.order.counts, 1)?;
             self.entries = EntryBuffers::new(&self.gpu, kernels, &self.order.counts, wanted)?;
         }
         Ok(true)

@@ -2,7 +2,8 @@
 
 use trapeze_scene::{ColorSource, FrameSettings, Scene, Selection, ShDegree};
 
-use crate::activate::{HarmonicsStorage, canonical_poses, harmonics_words, pack_harmonics};
+use crate::activate::canonical_poses;
+use crate::harmonics::{self, HarmonicsStorage};
 use crate::layout::{Cluster, Pose};
 use crate::{Gpu, GpuError};
 
@@ -44,16 +45,14 @@ impl SceneBuffers {
         max_degree: ShDegree,
         storage: HarmonicsStorage,
     ) -> Result<Self, GpuError> {
-        scene.validate()?;
         let sh_degree = scene.splats.used_sh_degree().min(max_degree);
         let cluster_rows = cluster_rows(scene);
         let motion: &[f32] = scene.motion.as_ref().map_or(&[0.0], |m| &m.values);
-        let coefficients = sh_degree.coefficients();
         Ok(Self {
             count: scene.len() as u32,
             canonical_poses: gpu.storage_of("poses", &canonical_poses(scene))?,
             harmonics: gpu
-                .storage_of("harmonics", &pack_harmonics(&scene.splats, coefficients, storage))?,
+                .storage_of("harmonics", &harmonics::pack(&scene.splats, sh_degree, storage))?,
             sh_degree,
             harmonics_storage: storage,
             motion: gpu.storage_of("motion values", motion)?,
@@ -68,7 +67,7 @@ impl SceneBuffers {
 
     /// Bytes of one splat in each of the buffers that are bound in windows.
     pub(crate) fn bytes_per_splat(&self) -> WindowedBytes {
-        let words = harmonics_words(self.sh_degree.coefficients(), self.harmonics_storage);
+        let words = self.harmonics_storage.words(self.sh_degree);
         WindowedBytes { pose: size_of::<Pose>() as u64, harmonics: 4 * words as u64 }
     }
 
@@ -104,7 +103,8 @@ fn cluster_rows(scene: &Scene) -> Vec<Cluster> {
     }
 }
 
-fn heat_scale(scene: &Scene) -> f32 {
+/// 1 / (motion value that is drawn white).
+pub(crate) fn heat_scale(scene: &Scene) -> f32 {
     let value = scene.motion.as_ref().map_or(0.0, |m| m.threshold_at_percentile(HEAT_PERCENTILE));
     if value > 0.0 && value.is_finite() { 1.0 / value } else { 1.0 }
 }

@@ -6,3 +6,4 @@ mod weights;
 
 pub use stage::NetworkPrecision;
 pub(crate) use stage::{DeformStage, DeformWork};
+pub(crate) use weights::PackedWeights;

@@ -175,7 +175,7 @@ impl Renderer {
     fn seen(&self, [expected, median, splat, label]: [u32; 4]) -> Option<Pick> {
         let (expected, median) = (f32::from_bits(expected), f32::from_bits(median));
         (splat != NO_SPLAT).then(|| Pick {
-            splat,
+            splat: self.index_in_scene(splat),
             cluster: self.scene.clusters.as_ref().map(|_| label),
             depth: if median.is_nan() { expected } else { median },
         })
