@@ -1,7 +1,8 @@
-// Stage 1, second part: the deformation network, fused, in single precision.
+// Stage 1, second part: the deformation network, fused, in single precision or with weights and
+// hidden vectors in half precision.
 //
 // Needs: common/dispatch, common/counters, common/frame, common/numbers, common/trigonometry,
-// common/deformation, common/deform_splat.
+// common/deformation, common/deform_splat, and common/hidden_single or common/hidden_half.
 //
 // A workgroup evaluates SPLATS splats. The hidden vectors stay in workgroup memory, feature-major:
 // row k holds feature k of all splats. A thread computes 4 features of 16 splats; per row of
@@ -18,7 +19,7 @@
 @group(0) @binding(4) var<storage, read> counts: array<u32>;
 /// Rows of WIDTH weights, one per input feature: layer after layer; the skip layer's rows for h
 /// before those for γ(xyz). Then WIDTH rows of 16 for the heads.
-@group(0) @binding(5) var<storage, read> weights: array<vec4<f32>>;
+@group(0) @binding(5) var<storage, read> weights: array<Stored>;
 /// WIDTH biases per layer, then 16 for the heads.
 @group(0) @binding(6) var<storage, read> biases: array<vec4<f32>>;
 
@@ -30,8 +31,6 @@ override SPLATS: u32 = 16u;
 override THREADS: u32 = 64u;
 /// max(WIDTH, input rows) · SPLATS / 4.
 override HIDDEN_VECTORS: u32 = 1024u;
-
-var<workgroup> hidden: array<vec4<f32>, HIDDEN_VECTORS>;
 
 /// Four features of sixteen splats.
 struct Block {
@@ -63,18 +62,18 @@ fn encode(first: u32, thread: u32) {
         let octave = task / (quads * 3u);
         let wave = waves_of(four_coordinates(first + 4u * quad, axis), axis, octave);
         let row = 3u + 6u * octave + axis;
-        hidden[row * quads + quad] = wave.sine;
-        hidden[(row + 3u) * quads + quad] = wave.cosine;
+        hidden[row * quads + quad] = Stored(wave.sine);
+        hidden[(row + 3u) * quads + quad] = Stored(wave.cosine);
     }
     for (var task = thread; task < quads * 3u; task += THREADS) {
         let quad = task % quads;
         let axis = task / quads;
-        hidden[axis * quads + quad] = four_coordinates(first + 4u * quad, axis)
-            + deformation.origin[axis];
+        let world = four_coordinates(first + 4u * quad, axis) + deformation.origin[axis];
+        hidden[axis * quads + quad] = Stored(world);
     }
     let used = (3u + 6u * deformation.octaves) * quads;
     for (var at = used + thread; at < deformation.input_rows * quads; at += THREADS) {
-        hidden[at] = vec4<f32>(0.0);
+        hidden[at] = Stored();
     }
 }
 
@@ -94,10 +93,10 @@ fn accumulate(block: ptr<function, Block>, first_row: u32, rows: u32, features: 
         let next1 = weights[weight_at + WIDTH / 4u];
         let next2 = weights[weight_at + 2u * (WIDTH / 4u)];
         let next3 = weights[weight_at + 3u * (WIDTH / 4u)];
-        multiply_add(block, w0, hidden_at);
-        multiply_add(block, w1, hidden_at + SPLATS / 4u);
-        multiply_add(block, w2, hidden_at + 2u * (SPLATS / 4u));
-        multiply_add(block, w3, hidden_at + 3u * (SPLATS / 4u));
+        multiply_add(block, vec4<f32>(w0), hidden_at);
+        multiply_add(block, vec4<f32>(w1), hidden_at + SPLATS / 4u);
+        multiply_add(block, vec4<f32>(w2), hidden_at + 2u * (SPLATS / 4u));
+        multiply_add(block, vec4<f32>(w3), hidden_at + 3u * (SPLATS / 4u));
         hidden_at += SPLATS;
         w0 = next0;
         w1 = next1;
@@ -108,10 +107,10 @@ fn accumulate(block: ptr<function, Block>, first_row: u32, rows: u32, features: 
 
 /// block += w ⊗ (one feature of sixteen splats).
 fn multiply_add(block: ptr<function, Block>, w: vec4<f32>, at: u32) {
-    let a = hidden[at];
-    let b = hidden[at + 1u];
-    let c = hidden[at + 2u];
-    let d = hidden[at + 3u];
+    let a = vec4<f32>(hidden[at]);
+    let b = vec4<f32>(hidden[at + 1u]);
+    let c = vec4<f32>(hidden[at + 2u]);
+    let d = vec4<f32>(hidden[at + 3u]);
     (*block).s0 = fma(w, vec4<f32>(a.x), (*block).s0);
     (*block).s1 = fma(w, vec4<f32>(a.y), (*block).s1);
     (*block).s2 = fma(w, vec4<f32>(a.z), (*block).s2);
@@ -143,10 +142,10 @@ fn store(block: Block, features: u32, quad: u32) {
 fn store_quad(at: u32, a: vec4<f32>, b: vec4<f32>, c: vec4<f32>, d: vec4<f32>) {
     let zero = vec4<f32>(0.0);
     let rows = transpose(mat4x4<f32>(max(a, zero), max(b, zero), max(c, zero), max(d, zero)));
-    hidden[at] = rows[0];
-    hidden[at + SPLATS / 4u] = rows[1];
-    hidden[at + 2u * (SPLATS / 4u)] = rows[2];
-    hidden[at + 3u * (SPLATS / 4u)] = rows[3];
+    hidden[at] = Stored(rows[0]);
+    hidden[at + SPLATS / 4u] = Stored(rows[1]);
+    hidden[at + 2u * (SPLATS / 4u)] = Stored(rows[2]);
+    hidden[at + 3u * (SPLATS / 4u)] = Stored(rows[3]);
 }
 
 @compute @workgroup_size(THREADS)
@@ -200,17 +199,17 @@ fn deform(
         let splat = listed_splat(first + i);
         poses[splat] = apply_outputs(
             canonical_poses[splat],
-            hidden[i],
-            hidden[SPLATS + i],
-            hidden[2u * SPLATS + i],
-            hidden[3u * SPLATS + i],
+            kept_outputs(i),
+            kept_outputs(SPLATS + i),
+            kept_outputs(2u * SPLATS + i),
+            kept_outputs(3u * SPLATS + i),
         );
     }
 }
 
 fn store_head(task: u32, outputs: vec4<f32>) {
     if (task < 4u * SPLATS) {
-        hidden[task] = outputs;
+        keep_outputs(task, outputs);
     }
 }
 
@@ -223,8 +222,8 @@ fn head(task: u32, head_weights: u32, head_biases: u32) -> vec4<f32> {
     let splat = task % SPLATS;
     var sum = biases[head_biases + quarter];
     for (var row = 0u; row < WIDTH; row++) {
-        let feature = hidden[row * (SPLATS / 4u) + splat / 4u][splat % 4u];
-        sum += weights[head_weights + 4u * row + quarter] * feature;
+        let feature = f32(hidden[row * (SPLATS / 4u) + splat / 4u][splat % 4u]);
+        sum += vec4<f32>(weights[head_weights + 4u * row + quarter]) * feature;
     }
     return sum;
 }

@@ -10,9 +10,9 @@ struct _mslBufferSizes {
     uint size1;
     uint size2;
     uint size3;
-    uint size4;
     uint size5;
     uint size6;
+    uint size7;
 };
 
 struct Pose {
@@ -47,10 +47,12 @@ struct Waves {
     metal::float4 cosine;
 };
 typedef Pose type_9[1];
-typedef metal::float4 type_10[1];
-struct type_11 {
-    metal::float4 inner[1024];
+typedef metal::float4 Stored;
+struct type_10 {
+    Stored inner[1024];
 };
+typedef Stored type_11[1];
+typedef metal::float4 type_12[1];
 struct Block {
     metal::float4 s0_;
     metal::float4 s1_;
@@ -84,10 +86,10 @@ constant float INVERSE_TAU_3_ = 0.0000000064206382;
 constant float MIN_ROTATION_NORM = 0.000001;
 constant float MIN_DEFORMED_SCALE = 0.000001;
 constant float MAX_SCALE = 1000000000000.0;
+constant uint HIDDEN_VECTORS = 1024u;
 constant uint WIDTH = 256u;
 constant uint SPLATS = 16u;
 constant uint THREADS = 64u;
-constant uint HIDDEN_VECTORS = 1024u;
 
 uint flat_group(
     metal::uint3 group_1,
@@ -353,6 +355,23 @@ Pose apply_outputs(
     return _e58;
 }
 
+void keep_outputs(
+    uint task,
+    metal::float4 outputs,
+    threadgroup type_10& hidden
+) {
+    hidden.inner[task] = outputs;
+    return;
+}
+
+metal::float4 kept_outputs(
+    uint task_1,
+    threadgroup type_10& hidden
+) {
+    Stored _e3 = hidden.inner[task_1];
+    return _e3;
+}
+
 uint naga_mod(uint lhs, uint rhs) {
     return lhs % metal::select(rhs, 1u, rhs == 0u);
 }
@@ -368,83 +387,84 @@ void encode(
     device type_8 const& counts,
     device type_8 const& dynamic_splats,
     device type_9 const& canonical_poses,
-    threadgroup type_11& hidden,
+    threadgroup type_10& hidden,
     constant _mslBufferSizes& _buffer_sizes
 ) {
-    uint task = {};
-    uint task_1 = {};
+    uint task_2 = {};
+    uint task_3 = {};
     uint at = {};
     uint _e9 = deformation.octaves;
     uint waves = 3u * _e9;
-    task = thread_1;
+    task_2 = thread_1;
     bool loop_init = true;
     while(true) {
         if (!loop_init) {
-            uint _e47 = task;
-            task = _e47 + THREADS;
+            uint _e49 = task_2;
+            task_2 = _e49 + THREADS;
         }
         loop_init = false;
-        uint _e12 = task;
+        uint _e12 = task_2;
         if (_e12 < (4u * waves)) {
         } else {
             break;
         }
         {
-            uint _e15 = task;
+            uint _e15 = task_2;
             uint quad_2 = naga_mod(_e15, 4u);
-            uint _e17 = task;
+            uint _e17 = task_2;
             uint axis_3 = naga_mod(naga_div(_e17, 4u), 3u);
-            uint _e21 = task;
+            uint _e21 = task_2;
             uint octave_1 = naga_div(_e21, 12u);
             metal::float4 _e28 = four_coordinates(first_1 + (4u * quad_2), axis_3, deformation, counts, dynamic_splats, canonical_poses, _buffer_sizes);
             Waves _e29 = waves_of(_e28, axis_3, octave_1, deformation);
             uint row_3 = (3u + (6u * octave_1)) + axis_3;
-            hidden.inner[(row_3 * 4u) + quad_2] = _e29.sine;
-            hidden.inner[((row_3 + 3u) * 4u) + quad_2] = _e29.cosine;
+            hidden.inner[(row_3 * 4u) + quad_2] = static_cast<metal::float4>(_e29.sine);
+            hidden.inner[((row_3 + 3u) * 4u) + quad_2] = static_cast<metal::float4>(_e29.cosine);
         }
     }
-    task_1 = thread_1;
+    task_3 = thread_1;
     bool loop_init_1 = true;
     while(true) {
         if (!loop_init_1) {
-            uint _e73 = task_1;
-            task_1 = _e73 + THREADS;
+            uint _e76 = task_3;
+            task_3 = _e76 + THREADS;
         }
         loop_init_1 = false;
-        uint _e51 = task_1;
-        if (_e51 < 12u) {
+        uint _e53 = task_3;
+        if (_e53 < 12u) {
         } else {
             break;
         }
         {
-            uint _e55 = task_1;
-            uint quad_3 = naga_mod(_e55, 4u);
-            uint _e57 = task_1;
-            uint axis_4 = naga_div(_e57, 4u);
-            metal::float4 _e66 = four_coordinates(first_1 + (4u * quad_3), axis_4, deformation, counts, dynamic_splats, canonical_poses, _buffer_sizes);
-            float _e70 = deformation.origin[axis_4];
-            hidden.inner[(axis_4 * 4u) + quad_3] = _e66 + metal::float4(_e70);
+            uint _e57 = task_3;
+            uint quad_3 = naga_mod(_e57, 4u);
+            uint _e59 = task_3;
+            uint axis_4 = naga_div(_e59, 4u);
+            metal::float4 _e64 = four_coordinates(first_1 + (4u * quad_3), axis_4, deformation, counts, dynamic_splats, canonical_poses, _buffer_sizes);
+            float _e68 = deformation.origin[axis_4];
+            metal::float4 world_1 = _e64 + metal::float4(_e68);
+            hidden.inner[(axis_4 * 4u) + quad_3] = static_cast<metal::float4>(world_1);
         }
     }
-    uint _e80 = deformation.octaves;
-    uint used = (3u + (6u * _e80)) * 4u;
+    uint _e83 = deformation.octaves;
+    uint used = (3u + (6u * _e83)) * 4u;
     at = used + thread_1;
     bool loop_init_2 = true;
     while(true) {
         if (!loop_init_2) {
-            uint _e97 = at;
-            at = _e97 + THREADS;
+            uint _e99 = at;
+            at = _e99 + THREADS;
         }
         loop_init_2 = false;
-        uint _e86 = at;
-        uint _e89 = deformation.input_rows;
-        if (_e86 < (_e89 * 4u)) {
+        uint _e89 = at;
+        uint _e92 = deformation.input_rows;
+        if (_e89 < (_e92 * 4u)) {
         } else {
             break;
         }
         {
-            uint _e93 = at;
-            hidden.inner[_e93] = metal::float4(0.0);
+            uint _e96 = at;
+            hidden.inner[_e96] = Stored {};
         }
     }
     return;
@@ -454,44 +474,48 @@ void multiply_add(
     thread Block& block_1,
     metal::float4 w_1,
     uint at_1,
-    threadgroup type_11& hidden
+    threadgroup type_10& hidden
 ) {
-    metal::float4 a_2 = hidden.inner[at_1];
-    metal::float4 b_2 = hidden.inner[at_1 + 1u];
-    metal::float4 c_2 = hidden.inner[at_1 + 2u];
-    metal::float4 d_2 = hidden.inner[at_1 + 3u];
-    metal::float4 _e25 = block_1.s0_;
-    block_1.s0_ = metal::fma(w_1, metal::float4(a_2.x), _e25);
-    metal::float4 _e31 = block_1.s1_;
-    block_1.s1_ = metal::fma(w_1, metal::float4(a_2.y), _e31);
-    metal::float4 _e37 = block_1.s2_;
-    block_1.s2_ = metal::fma(w_1, metal::float4(a_2.z), _e37);
-    metal::float4 _e43 = block_1.s3_;
-    block_1.s3_ = metal::fma(w_1, metal::float4(a_2.w), _e43);
-    metal::float4 _e49 = block_1.s4_;
-    block_1.s4_ = metal::fma(w_1, metal::float4(b_2.x), _e49);
-    metal::float4 _e55 = block_1.s5_;
-    block_1.s5_ = metal::fma(w_1, metal::float4(b_2.y), _e55);
-    metal::float4 _e61 = block_1.s6_;
-    block_1.s6_ = metal::fma(w_1, metal::float4(b_2.z), _e61);
-    metal::float4 _e67 = block_1.s7_;
-    block_1.s7_ = metal::fma(w_1, metal::float4(b_2.w), _e67);
-    metal::float4 _e73 = block_1.s8_;
-    block_1.s8_ = metal::fma(w_1, metal::float4(c_2.x), _e73);
-    metal::float4 _e79 = block_1.s9_;
-    block_1.s9_ = metal::fma(w_1, metal::float4(c_2.y), _e79);
-    metal::float4 _e85 = block_1.s10_;
-    block_1.s10_ = metal::fma(w_1, metal::float4(c_2.z), _e85);
-    metal::float4 _e91 = block_1.s11_;
-    block_1.s11_ = metal::fma(w_1, metal::float4(c_2.w), _e91);
-    metal::float4 _e97 = block_1.s12_;
-    block_1.s12_ = metal::fma(w_1, metal::float4(d_2.x), _e97);
-    metal::float4 _e103 = block_1.s13_;
-    block_1.s13_ = metal::fma(w_1, metal::float4(d_2.y), _e103);
-    metal::float4 _e109 = block_1.s14_;
-    block_1.s14_ = metal::fma(w_1, metal::float4(d_2.z), _e109);
-    metal::float4 _e115 = block_1.s15_;
-    block_1.s15_ = metal::fma(w_1, metal::float4(d_2.w), _e115);
+    Stored _e5 = hidden.inner[at_1];
+    metal::float4 a_2 = static_cast<metal::float4>(_e5);
+    Stored _e11 = hidden.inner[at_1 + 1u];
+    metal::float4 b_2 = static_cast<metal::float4>(_e11);
+    Stored _e17 = hidden.inner[at_1 + 2u];
+    metal::float4 c_2 = static_cast<metal::float4>(_e17);
+    Stored _e23 = hidden.inner[at_1 + 3u];
+    metal::float4 d_2 = static_cast<metal::float4>(_e23);
+    metal::float4 _e29 = block_1.s0_;
+    block_1.s0_ = metal::fma(w_1, metal::float4(a_2.x), _e29);
+    metal::float4 _e35 = block_1.s1_;
+    block_1.s1_ = metal::fma(w_1, metal::float4(a_2.y), _e35);
+    metal::float4 _e41 = block_1.s2_;
+    block_1.s2_ = metal::fma(w_1, metal::float4(a_2.z), _e41);
+    metal::float4 _e47 = block_1.s3_;
+    block_1.s3_ = metal::fma(w_1, metal::float4(a_2.w), _e47);
+    metal::float4 _e53 = block_1.s4_;
+    block_1.s4_ = metal::fma(w_1, metal::float4(b_2.x), _e53);
+    metal::float4 _e59 = block_1.s5_;
+    block_1.s5_ = metal::fma(w_1, metal::float4(b_2.y), _e59);
+    metal::float4 _e65 = block_1.s6_;
+    block_1.s6_ = metal::fma(w_1, metal::float4(b_2.z), _e65);
+    metal::float4 _e71 = block_1.s7_;
+    block_1.s7_ = metal::fma(w_1, metal::float4(b_2.w), _e71);
+    metal::float4 _e77 = block_1.s8_;
+    block_1.s8_ = metal::fma(w_1, metal::float4(c_2.x), _e77);
+    metal::float4 _e83 = block_1.s9_;
+    block_1.s9_ = metal::fma(w_1, metal::float4(c_2.y), _e83);
+    metal::float4 _e89 = block_1.s10_;
+    block_1.s10_ = metal::fma(w_1, metal::float4(c_2.z), _e89);
+    metal::float4 _e95 = block_1.s11_;
+    block_1.s11_ = metal::fma(w_1, metal::float4(c_2.w), _e95);
+    metal::float4 _e101 = block_1.s12_;
+    block_1.s12_ = metal::fma(w_1, metal::float4(d_2.x), _e101);
+    metal::float4 _e107 = block_1.s13_;
+    block_1.s13_ = metal::fma(w_1, metal::float4(d_2.y), _e107);
+    metal::float4 _e113 = block_1.s14_;
+    block_1.s14_ = metal::fma(w_1, metal::float4(d_2.z), _e113);
+    metal::float4 _e119 = block_1.s15_;
+    block_1.s15_ = metal::fma(w_1, metal::float4(d_2.w), _e119);
     return;
 }
 
@@ -501,36 +525,36 @@ void accumulate(
     uint rows,
     uint features,
     uint quad_,
-    device type_10 const& weights,
-    threadgroup type_11& hidden,
+    threadgroup type_10& hidden,
+    device type_11 const& weights,
     constant _mslBufferSizes& _buffer_sizes
 ) {
     uint weight_at = {};
     uint hidden_at = {};
-    metal::float4 w0_ = {};
-    metal::float4 w1_ = {};
-    metal::float4 w2_ = {};
-    metal::float4 w3_ = {};
+    Stored w0_ = {};
+    Stored w1_ = {};
+    Stored w2_ = {};
+    Stored w3_ = {};
     uint row_1 = 0u;
     weight_at = (first_row * 64u) + features;
     hidden_at = quad_;
     uint _e14 = weight_at;
-    metal::float4 _e16 = weights[_e14];
+    Stored _e16 = weights[_e14];
     w0_ = _e16;
     uint _e19 = weight_at;
-    metal::float4 _e26 = weights[_e19 + 64u];
+    Stored _e26 = weights[_e19 + 64u];
     w1_ = _e26;
     uint _e29 = weight_at;
-    metal::float4 _e38 = weights[_e29 + 128u];
+    Stored _e38 = weights[_e29 + 128u];
     w2_ = _e38;
     uint _e41 = weight_at;
-    metal::float4 _e50 = weights[_e41 + 192u];
+    Stored _e50 = weights[_e41 + 192u];
     w3_ = _e50;
     bool loop_init_3 = true;
     while(true) {
         if (!loop_init_3) {
-            uint _e124 = row_1;
-            row_1 = _e124 + 4u;
+            uint _e128 = row_1;
+            row_1 = _e128 + 4u;
         }
         loop_init_3 = false;
         uint _e54 = row_1;
@@ -542,27 +566,27 @@ void accumulate(
             uint _e56 = weight_at;
             weight_at = _e56 + WIDTH;
             uint _e60 = weight_at;
-            metal::float4 next0_ = weights[_e60];
+            Stored next0_ = weights[_e60];
             uint _e64 = weight_at;
-            metal::float4 next1_ = weights[_e64 + 64u];
+            Stored next1_ = weights[_e64 + 64u];
             uint _e73 = weight_at;
-            metal::float4 next2_ = weights[_e73 + 128u];
+            Stored next2_ = weights[_e73 + 128u];
             uint _e84 = weight_at;
-            metal::float4 next3_ = weights[_e84 + 192u];
-            metal::float4 _e94 = w0_;
-            uint _e95 = hidden_at;
-            multiply_add(block_2, _e94, _e95, hidden);
-            metal::float4 _e96 = w1_;
-            uint _e97 = hidden_at;
-            multiply_add(block_2, _e96, _e97 + 4u, hidden);
-            metal::float4 _e103 = w2_;
-            uint _e104 = hidden_at;
-            multiply_add(block_2, _e103, _e104 + 8u, hidden);
-            metal::float4 _e112 = w3_;
-            uint _e113 = hidden_at;
-            multiply_add(block_2, _e112, _e113 + 12u, hidden);
-            uint _e121 = hidden_at;
-            hidden_at = _e121 + SPLATS;
+            Stored next3_ = weights[_e84 + 192u];
+            Stored _e94 = w0_;
+            uint _e96 = hidden_at;
+            multiply_add(block_2, static_cast<metal::float4>(_e94), _e96, hidden);
+            Stored _e97 = w1_;
+            uint _e99 = hidden_at;
+            multiply_add(block_2, static_cast<metal::float4>(_e97), _e99 + 4u, hidden);
+            Stored _e105 = w2_;
+            uint _e107 = hidden_at;
+            multiply_add(block_2, static_cast<metal::float4>(_e105), _e107 + 8u, hidden);
+            Stored _e115 = w3_;
+            uint _e117 = hidden_at;
+            multiply_add(block_2, static_cast<metal::float4>(_e115), _e117 + 12u, hidden);
+            uint _e125 = hidden_at;
+            hidden_at = _e125 + SPLATS;
             w0_ = next0_;
             w1_ = next1_;
             w2_ = next2_;
@@ -578,14 +602,14 @@ void store_quad(
     metal::float4 b_1,
     metal::float4 c_1,
     metal::float4 d_1,
-    threadgroup type_11& hidden
+    threadgroup type_10& hidden
 ) {
     metal::float4 zero = metal::float4(0.0);
     metal::float4x4 rows_1 = metal::transpose(metal::float4x4(metal::max(a_1, zero), metal::max(b_1, zero), metal::max(c_1, zero), metal::max(d_1, zero)));
-    hidden.inner[at_2] = rows_1[0];
-    hidden.inner[at_2 + 4u] = rows_1[1];
-    hidden.inner[at_2 + 8u] = rows_1[2];
-    hidden.inner[at_2 + 12u] = rows_1[3];
+    hidden.inner[at_2] = static_cast<metal::float4>(rows_1[0]);
+    hidden.inner[at_2 + 4u] = static_cast<metal::float4>(rows_1[1]);
+    hidden.inner[at_2 + 8u] = static_cast<metal::float4>(rows_1[2]);
+    hidden.inner[at_2 + 12u] = static_cast<metal::float4>(rows_1[3]);
     return;
 }
 
@@ -593,7 +617,7 @@ void store(
     Block block_3,
     uint features_1,
     uint quad_1,
-    threadgroup type_11& hidden
+    threadgroup type_10& hidden
 ) {
     uint at_4 = ((4u * features_1) * 4u) + quad_1;
     store_quad(at_4, block_3.s0_, block_3.s1_, block_3.s2_, block_3.s3_, hidden);
@@ -604,28 +628,28 @@ void store(
 }
 
 metal::float4 head(
-    uint task_2,
+    uint task_4,
     uint head_weights,
     uint head_biases,
-    device type_10 const& weights,
-    device type_10 const& biases,
-    threadgroup type_11& hidden,
+    threadgroup type_10& hidden,
+    device type_11 const& weights,
+    device type_12 const& biases,
     constant _mslBufferSizes& _buffer_sizes
 ) {
     metal::float4 sum_1 = {};
     uint row_2 = 0u;
-    uint quarter = naga_div(task_2, SPLATS);
+    uint quarter = naga_div(task_4, SPLATS);
     if (quarter >= 4u) {
         return metal::float4(0.0);
     }
-    uint splat = naga_mod(task_2, SPLATS);
+    uint splat = naga_mod(task_4, SPLATS);
     metal::float4 _e14 = biases[head_biases + quarter];
     sum_1 = _e14;
     bool loop_init_4 = true;
     while(true) {
         if (!loop_init_4) {
-            uint _e48 = row_2;
-            row_2 = _e48 + 1u;
+            uint _e50 = row_2;
+            row_2 = _e50 + 1u;
         }
         loop_init_4 = false;
         uint _e18 = row_2;
@@ -635,24 +659,25 @@ metal::float4 head(
         }
         {
             uint _e22 = row_2;
-            float feature = hidden.inner[(_e22 * 4u) + naga_div(splat, 4u)][naga_mod(splat, 4u)];
-            metal::float4 _e36 = sum_1;
-            uint _e39 = row_2;
-            metal::float4 _e44 = weights[(head_weights + (4u * _e39)) + quarter];
-            sum_1 = _e36 + (_e44 * feature);
+            float _e35 = hidden.inner[(_e22 * 4u) + naga_div(splat, 4u)][naga_mod(splat, 4u)];
+            float feature = static_cast<float>(_e35);
+            metal::float4 _e37 = sum_1;
+            uint _e40 = row_2;
+            Stored _e45 = weights[(head_weights + (4u * _e40)) + quarter];
+            sum_1 = _e37 + (static_cast<metal::float4>(_e45) * feature);
         }
     }
-    metal::float4 _e50 = sum_1;
-    return _e50;
+    metal::float4 _e52 = sum_1;
+    return _e52;
 }
 
 void store_head(
-    uint task_3,
-    metal::float4 outputs,
-    threadgroup type_11& hidden
+    uint task_5,
+    metal::float4 outputs_1,
+    threadgroup type_10& hidden
 ) {
-    if (task_3 < 64u) {
-        hidden.inner[task_3] = outputs;
+    if (task_5 < 64u) {
+        keep_outputs(task_5, outputs_1, hidden);
         return;
     } else {
         return;
@@ -669,10 +694,10 @@ struct deformInput {
 , device type_8 const& counts [[user(fake0)]]
 , device type_8 const& dynamic_splats [[user(fake0)]]
 , device type_9 const& canonical_poses [[user(fake0)]]
+, threadgroup type_10& hidden
 , device type_9& poses [[user(fake0)]]
-, device type_10 const& weights [[user(fake0)]]
-, device type_10 const& biases [[user(fake0)]]
-, threadgroup type_11& hidden
+, device type_11 const& weights [[user(fake0)]]
+, device type_12 const& biases [[user(fake0)]]
 , constant _mslBufferSizes& _buffer_sizes [[user(fake0)]]
 ) {
     uint row = 0u;
@@ -707,7 +732,7 @@ struct deformInput {
             uint _e43 = layer;
             uint rows_2 = (_e43 == 0u) ? _e42 : WIDTH;
             uint _e47 = row;
-            accumulate(block, _e47, rows_2, features_2, quad_4, weights, hidden, _buffer_sizes);
+            accumulate(block, _e47, rows_2, features_2, quad_4, hidden, weights, _buffer_sizes);
             uint _e48 = row;
             row = _e48 + rows_2;
             metal::threadgroup_barrier(metal::mem_flags::mem_threadgroup);
@@ -718,7 +743,7 @@ struct deformInput {
                 metal::threadgroup_barrier(metal::mem_flags::mem_threadgroup);
                 uint _e55 = row;
                 uint _e58 = deformation.input_rows;
-                accumulate(block, _e55, _e58, features_2, quad_4, weights, hidden, _buffer_sizes);
+                accumulate(block, _e55, _e58, features_2, quad_4, hidden, weights, _buffer_sizes);
                 uint _e59 = row;
                 uint _e62 = deformation.input_rows;
                 row = _e59 + _e62;
@@ -733,10 +758,10 @@ struct deformInput {
     uint head_weights_1 = _e68 * 64u;
     uint _e76 = deformation.depth;
     uint head_biases_1 = _e76 * 64u;
-    metal::float4 _e82 = head(thread_, head_weights_1, head_biases_1, weights, biases, hidden, _buffer_sizes);
-    metal::float4 _e85 = head(thread_ + THREADS, head_weights_1, head_biases_1, weights, biases, hidden, _buffer_sizes);
-    metal::float4 _e91 = head(thread_ + 128u, head_weights_1, head_biases_1, weights, biases, hidden, _buffer_sizes);
-    metal::float4 _e97 = head(thread_ + 192u, head_weights_1, head_biases_1, weights, biases, hidden, _buffer_sizes);
+    metal::float4 _e82 = head(thread_, head_weights_1, head_biases_1, hidden, weights, biases, _buffer_sizes);
+    metal::float4 _e85 = head(thread_ + THREADS, head_weights_1, head_biases_1, hidden, weights, biases, _buffer_sizes);
+    metal::float4 _e91 = head(thread_ + 128u, head_weights_1, head_biases_1, hidden, weights, biases, _buffer_sizes);
+    metal::float4 _e97 = head(thread_ + 192u, head_weights_1, head_biases_1, hidden, weights, biases, _buffer_sizes);
     metal::threadgroup_barrier(metal::mem_flags::mem_threadgroup);
     store_head(thread_, _e82, hidden);
     store_head(thread_ + THREADS, _e85, hidden);
@@ -747,8 +772,8 @@ struct deformInput {
     bool loop_init_6 = true;
     while(true) {
         if (!loop_init_6) {
-            uint _e159 = i;
-            i = _e159 + THREADS;
+            uint _e151 = i;
+            i = _e151 + THREADS;
         }
         loop_init_6 = false;
         uint _e111 = i;
@@ -768,16 +793,16 @@ struct deformInput {
             uint _e122 = i;
             uint _e124 = listed_splat(first_2 + _e122, deformation, counts, dynamic_splats, _buffer_sizes);
             Pose _e129 = canonical_poses[_e124];
-            uint _e131 = i;
-            metal::float4 _e133 = hidden.inner[_e131];
-            uint _e136 = i;
-            metal::float4 _e139 = hidden.inner[SPLATS + _e136];
-            uint _e145 = i;
-            metal::float4 _e148 = hidden.inner[32u + _e145];
-            uint _e154 = i;
-            metal::float4 _e157 = hidden.inner[48u + _e154];
-            Pose _e158 = apply_outputs(_e129, _e133, _e139, _e148, _e157, deformation);
-            poses[_e124] = _e158;
+            uint _e130 = i;
+            metal::float4 _e131 = kept_outputs(_e130, hidden);
+            uint _e133 = i;
+            metal::float4 _e135 = kept_outputs(SPLATS + _e133, hidden);
+            uint _e140 = i;
+            metal::float4 _e142 = kept_outputs(32u + _e140, hidden);
+            uint _e147 = i;
+            metal::float4 _e149 = kept_outputs(48u + _e147, hidden);
+            Pose _e150 = apply_outputs(_e129, _e131, _e135, _e142, _e149, deformation);
+            poses[_e124] = _e150;
         }
     }
     return;

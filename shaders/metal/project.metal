@@ -78,8 +78,9 @@ constant float MAX_CHANNEL = 65504.0;
 constant float MIN_NORMAL = 0.000000000000000000000000000000000000011754944;
 constant float SH_C0_ = 0.28209478;
 constant float SH_C1_ = 0.4886025;
-constant bool HALF_HARMONICS = false;
+constant uint HARMONICS_STORAGE = 0u;
 constant uint STORED_SH_DEGREE = 0u;
+constant uint HEADER_WORDS = 2u;
 
 uint flat_group(
     metal::uint3 group_1,
@@ -418,33 +419,84 @@ uint harmonics_word(
     device type_8 const& harmonics,
     constant _mslBufferSizes& _buffer_sizes
 ) {
-    uint _e31 = harmonics[(((naga_div(local_10, 32u) * 3u) + index) * 32u) + naga_mod(local_10, 32u)];
-    return _e31;
+    uint words = {};
+    words = 3u;
+    if (false) {
+        words = 2u;
+    } else {
+        if (false) {
+            words = 2u;
+        }
+    }
+    uint _e34 = words;
+    uint _e43 = harmonics[(((naga_div(local_10, 32u) * _e34) + index) * 32u) + naga_mod(local_10, 32u)];
+    return _e43;
 }
 
-float coefficient(
+float half_coefficient(
     uint local_11,
     uint index_1,
     device type_8 const& harmonics,
     constant _mslBufferSizes& _buffer_sizes
 ) {
-    if (HALF_HARMONICS) {
-        uint _e5 = harmonics_word(local_11, naga_div(index_1, 2u), harmonics, _buffer_sizes);
-        return float2(as_type<half2>(_e5))[naga_mod(index_1, 2u)];
-    }
-    uint _e10 = harmonics_word(local_11, index_1, harmonics, _buffer_sizes);
-    return as_type<float>(_e10);
+    uint _e4 = harmonics_word(local_11, naga_div(index_1, 2u), harmonics, _buffer_sizes);
+    return float2(as_type<half2>(_e4))[naga_mod(index_1, 2u)];
 }
 
-metal::float3 coefficients(
+float byte_coefficient(
     uint local_12,
-    uint k,
+    uint index_2,
+    constant Frame& frame,
     device type_8 const& harmonics,
     constant _mslBufferSizes& _buffer_sizes
 ) {
-    float _e4 = coefficient(local_12, 3u * k, harmonics, _buffer_sizes);
-    float _e9 = coefficient(local_12, (3u * k) + 1u, harmonics, _buffer_sizes);
-    float _e14 = coefficient(local_12, (3u * k) + 2u, harmonics, _buffer_sizes);
+    uint _e8 = harmonics_word(local_12, HEADER_WORDS + naga_div(index_2 - 3u, 4u), harmonics, _buffer_sizes);
+    int steps = as_type<int>(_e8 << (24u - (8u * naga_mod(index_2 - 3u, 4u)))) >> 24u;
+    if (steps == -128) {
+        uint _e26 = frame.zero;
+        return as_type<float>(2143289344u + _e26);
+    }
+    uint band = (1u + static_cast<uint>(index_2 >= 12u)) + static_cast<uint>(index_2 >= 27u);
+    float _e41 = half_coefficient(local_12, 2u + band, harmonics, _buffer_sizes);
+    return static_cast<float>(steps) * _e41;
+}
+
+float coefficient(
+    uint local_13,
+    uint index_3,
+    constant Frame& frame,
+    device type_8 const& harmonics,
+    constant _mslBufferSizes& _buffer_sizes
+) {
+    bool local_14 = {};
+    if (true) {
+        uint _e6 = harmonics_word(local_13, index_3, harmonics, _buffer_sizes);
+        return as_type<float>(_e6);
+    }
+    if (true) {
+        local_14 = index_3 < 3u;
+    } else {
+        local_14 = true;
+    }
+    bool _e18 = local_14;
+    if (_e18) {
+        float _e19 = half_coefficient(local_13, index_3, harmonics, _buffer_sizes);
+        return _e19;
+    }
+    float _e20 = byte_coefficient(local_13, index_3, frame, harmonics, _buffer_sizes);
+    return _e20;
+}
+
+metal::float3 coefficients(
+    uint local_15,
+    uint k,
+    constant Frame& frame,
+    device type_8 const& harmonics,
+    constant _mslBufferSizes& _buffer_sizes
+) {
+    float _e4 = coefficient(local_15, 3u * k, frame, harmonics, _buffer_sizes);
+    float _e9 = coefficient(local_15, (3u * k) + 1u, frame, harmonics, _buffer_sizes);
+    float _e14 = coefficient(local_15, (3u * k) + 2u, frame, harmonics, _buffer_sizes);
     return metal::float3(_e4, _e9, _e14);
 }
 
@@ -452,24 +504,25 @@ metal::float3 view_color(
     uint at,
     uint degree,
     metal::float3 d,
+    constant Frame& frame,
     device type_8 const& harmonics,
     constant _mslBufferSizes& _buffer_sizes
 ) {
     metal::float3 color_1 = {};
-    metal::float3 _e5 = coefficients(at, 0u, harmonics, _buffer_sizes);
+    metal::float3 _e5 = coefficients(at, 0u, frame, harmonics, _buffer_sizes);
     color_1 = metal::float3(0.5) + (SH_C0_ * _e5);
     if (degree == 0u) {
         metal::float3 _e13 = color_1;
         return _e13;
     }
     metal::float3 _e14 = color_1;
-    metal::float3 _e19 = coefficients(at, 1u, harmonics, _buffer_sizes);
+    metal::float3 _e19 = coefficients(at, 1u, frame, harmonics, _buffer_sizes);
     color_1 = _e14 + ((-0.4886025 * d.y) * _e19);
     metal::float3 _e22 = color_1;
-    metal::float3 _e27 = coefficients(at, 2u, harmonics, _buffer_sizes);
+    metal::float3 _e27 = coefficients(at, 2u, frame, harmonics, _buffer_sizes);
     color_1 = _e22 + ((SH_C1_ * d.z) * _e27);
     metal::float3 _e30 = color_1;
-    metal::float3 _e35 = coefficients(at, 3u, harmonics, _buffer_sizes);
+    metal::float3 _e35 = coefficients(at, 3u, frame, harmonics, _buffer_sizes);
     color_1 = _e30 + ((-0.4886025 * d.x) * _e35);
     if (degree == 1u) {
         metal::float3 _e40 = color_1;
@@ -477,44 +530,44 @@ metal::float3 view_color(
     }
     metal::float3 s = d * d;
     metal::float3 _e42 = color_1;
-    metal::float3 _e49 = coefficients(at, 4u, harmonics, _buffer_sizes);
+    metal::float3 _e49 = coefficients(at, 4u, frame, harmonics, _buffer_sizes);
     color_1 = _e42 + (((1.0925485 * d.x) * d.y) * _e49);
     metal::float3 _e52 = color_1;
-    metal::float3 _e59 = coefficients(at, 5u, harmonics, _buffer_sizes);
+    metal::float3 _e59 = coefficients(at, 5u, frame, harmonics, _buffer_sizes);
     color_1 = _e52 + (((-1.0925485 * d.y) * d.z) * _e59);
     metal::float3 _e62 = color_1;
-    metal::float3 _e73 = coefficients(at, 6u, harmonics, _buffer_sizes);
+    metal::float3 _e73 = coefficients(at, 6u, frame, harmonics, _buffer_sizes);
     color_1 = _e62 + ((0.31539157 * (((2.0 * s.z) - s.x) - s.y)) * _e73);
     metal::float3 _e76 = color_1;
-    metal::float3 _e83 = coefficients(at, 7u, harmonics, _buffer_sizes);
+    metal::float3 _e83 = coefficients(at, 7u, frame, harmonics, _buffer_sizes);
     color_1 = _e76 + (((-1.0925485 * d.x) * d.z) * _e83);
     metal::float3 _e86 = color_1;
-    metal::float3 _e93 = coefficients(at, 8u, harmonics, _buffer_sizes);
+    metal::float3 _e93 = coefficients(at, 8u, frame, harmonics, _buffer_sizes);
     color_1 = _e86 + ((0.54627424 * (s.x - s.y)) * _e93);
     if (degree == 2u) {
         metal::float3 _e98 = color_1;
         return _e98;
     }
     metal::float3 _e99 = color_1;
-    metal::float3 _e110 = coefficients(at, 9u, harmonics, _buffer_sizes);
+    metal::float3 _e110 = coefficients(at, 9u, frame, harmonics, _buffer_sizes);
     color_1 = _e99 + (((-0.5900436 * d.y) * ((3.0 * s.x) - s.y)) * _e110);
     metal::float3 _e113 = color_1;
-    metal::float3 _e122 = coefficients(at, 10u, harmonics, _buffer_sizes);
+    metal::float3 _e122 = coefficients(at, 10u, frame, harmonics, _buffer_sizes);
     color_1 = _e113 + ((((2.8906114 * d.x) * d.y) * d.z) * _e122);
     metal::float3 _e125 = color_1;
-    metal::float3 _e138 = coefficients(at, 11u, harmonics, _buffer_sizes);
+    metal::float3 _e138 = coefficients(at, 11u, frame, harmonics, _buffer_sizes);
     color_1 = _e125 + (((-0.4570458 * d.y) * (((4.0 * s.z) - s.x) - s.y)) * _e138);
     metal::float3 _e141 = color_1;
-    metal::float3 _e158 = coefficients(at, 12u, harmonics, _buffer_sizes);
+    metal::float3 _e158 = coefficients(at, 12u, frame, harmonics, _buffer_sizes);
     color_1 = _e141 + (((0.37317634 * d.z) * (((2.0 * s.z) - (3.0 * s.x)) - (3.0 * s.y))) * _e158);
     metal::float3 _e161 = color_1;
-    metal::float3 _e174 = coefficients(at, 13u, harmonics, _buffer_sizes);
+    metal::float3 _e174 = coefficients(at, 13u, frame, harmonics, _buffer_sizes);
     color_1 = _e161 + (((-0.4570458 * d.x) * (((4.0 * s.z) - s.x) - s.y)) * _e174);
     metal::float3 _e177 = color_1;
-    metal::float3 _e186 = coefficients(at, 14u, harmonics, _buffer_sizes);
+    metal::float3 _e186 = coefficients(at, 14u, frame, harmonics, _buffer_sizes);
     color_1 = _e177 + (((1.4453057 * d.z) * (s.x - s.y)) * _e186);
     metal::float3 _e189 = color_1;
-    metal::float3 _e200 = coefficients(at, 15u, harmonics, _buffer_sizes);
+    metal::float3 _e200 = coefficients(at, 15u, frame, harmonics, _buffer_sizes);
     color_1 = _e189 + (((-0.5900436 * d.x) * (s.x - (3.0 * s.y))) * _e200);
     metal::float3 _e203 = color_1;
     return _e203;
@@ -539,7 +592,7 @@ metal::float3 motion_heat(
 }
 
 metal::float3 splat_color(
-    uint local_13,
+    uint local_16,
     uint label,
     metal::float3 to_splat_1,
     constant Frame& frame,
@@ -555,7 +608,7 @@ metal::float3 splat_color(
     }
     uint _e14 = frame.color_source;
     if (_e14 == 2u) {
-        float _e24 = motion[metal::min(local_13, (1 + (_buffer_sizes.size5 - 0 - 4) / 4) - 1u)];
+        float _e24 = motion[metal::min(local_16, (1 + (_buffer_sizes.size5 - 0 - 4) / 4) - 1u)];
         float _e27 = frame.heat_scale;
         metal::float3 _e29 = motion_heat(_e24 * _e27);
         return _e29;
@@ -563,7 +616,7 @@ metal::float3 splat_color(
     uint _e33 = frame.sh_degree;
     uint degree_1 = metal::min(STORED_SH_DEGREE, _e33);
     metal::float3 _e35 = direction(to_splat_1);
-    metal::float3 _e36 = view_color(local_13, degree_1, _e35, harmonics, _buffer_sizes);
+    metal::float3 _e36 = view_color(local_16, degree_1, _e35, frame, harmonics, _buffer_sizes);
     metal::float3 _e37 = limited_color(_e36);
     return _e37;
 }
@@ -588,16 +641,16 @@ struct projectInput {
 , constant _mslBufferSizes& _buffer_sizes [[user(fake0)]]
 ) {
     uint _e3 = flat_group(group, groups);
-    uint local_14 = (_e3 * 256u) + thread_;
+    uint local_17 = (_e3 * 256u) + thread_;
     uint _e9 = window.count;
-    if (local_14 >= _e9) {
+    if (local_17 >= _e9) {
         return;
     }
     uint _e13 = window.first;
-    uint splat = _e13 + local_14;
+    uint splat = _e13 + local_17;
     sort_keys[splat] = NOT_DRAWN;
     sort_keys_low[splat] = 0u;
-    Pose pose = poses[local_14];
+    Pose pose = poses[local_17];
     uint _e28 = clusters[pose.label].shown;
     if (_e28 == 0u) {
         return;
@@ -607,7 +660,7 @@ struct projectInput {
         return;
     }
     metal::float3 _e40 = from_camera(pose.position, frame);
-    metal::float3 _e41 = splat_color(local_14, pose.label, _e40, frame, harmonics, clusters, motion, _buffer_sizes);
+    metal::float3 _e41 = splat_color(local_17, pose.label, _e40, frame, harmonics, clusters, motion, _buffer_sizes);
     centres[splat] = metal::float4(_e35.centre, metal::float3(_e35.factor).xy);
     extents[splat] = metal::float4(_e35.factor[2], pose.log2_opacity, _e35.depth.x, _e35.half_height);
     colors[splat] = metal::float4(_e41, as_type<float>(pose.label));

@@ -5,6 +5,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 
 use trapeze_scene::ShDegree;
 
+use crate::deform::NetworkPrecision;
 use crate::differentiable::DifferentiableKernels;
 use crate::harmonics::HarmonicsStorage;
 use crate::kernel::{Binding, Interface};
@@ -22,8 +23,9 @@ pub(crate) struct Kernels {
     pub mask: wgpu::ComputePipeline,
     pub project_interface: Interface,
     project: Mutex<HashMap<(ShDegree, HarmonicsStorage), wgpu::ComputePipeline>>,
-    pub deform_interface: Interface,
+    deform_single: Interface,
     deform: Mutex<HashMap<NetworkShape, wgpu::ComputePipeline>>,
+    deform_half: OnceLock<Interface>,
     deform_matrix: OnceLock<(Interface, wgpu::ComputePipeline)>,
     differentiable: OnceLock<DifferentiableKernels>,
 }
@@ -48,12 +50,14 @@ pub(crate) struct NetworkShape {
     pub input_rows: u32,
     /// Splats per workgroup.
     pub splats: u32,
+    /// Precision of weights and hidden vectors.
+    pub precision: NetworkPrecision,
 }
 
 impl NetworkShape {
-    /// Bytes of workgroup memory.
-    pub(crate) fn workgroup_bytes(self) -> u32 {
-        self.width.max(self.input_rows) * self.splats * 4
+    /// Vectors of four features in workgroup memory.
+    fn hidden_vectors(self) -> u32 {
+        self.width.max(self.input_rows) * self.splats / 4
     }
 }
 
@@ -78,13 +82,14 @@ impl Kernels {
                 &[Uniform, Uniform, Read, Read, Read, Read, Write, Write, Write, Write, Write],
             ),
             project: Mutex::default(),
-            deform_interface: Interface::new(
+            deform_single: Interface::new(
                 gpu,
                 "deform",
                 &shaders::DEFORM.source(),
                 &NETWORK_BINDINGS,
             ),
             deform: Mutex::default(),
+            deform_half: OnceLock::new(),
             deform_matrix: OnceLock::new(),
             differentiable: OnceLock::new(),
         }
@@ -108,6 +113,17 @@ impl Kernels {
         pipelines.entry((degree, storage)).or_insert_with(make).clone()
     }
 
+    /// Bindings of the network; in half precision only for devices that have it.
+    pub(crate) fn deform_interface(&self, gpu: &Gpu, precision: NetworkPrecision) -> &Interface {
+        match precision {
+            NetworkPrecision::Single => &self.deform_single,
+            NetworkPrecision::Half => self.deform_half.get_or_init(|| {
+                let source = shaders::DEFORM_HALF.source();
+                Interface::new(gpu, "deform_half", &source, &NETWORK_BINDINGS)
+            }),
+        }
+    }
+
     /// The network of this shape.
     pub(crate) fn deform(&self, gpu: &Gpu, shape: NetworkShape) -> wgpu::ComputePipeline {
         let mut pipelines = self.deform.lock().unwrap_or_else(PoisonError::into_inner);
@@ -116,9 +132,9 @@ impl Kernels {
                 ("WIDTH", f64::from(shape.width)),
                 ("SPLATS", f64::from(shape.splats)),
                 ("THREADS", f64::from(shape.width / 4 * shape.splats / 16)),
-                ("HIDDEN_VECTORS", f64::from(shape.workgroup_bytes() / 16)),
+                ("HIDDEN_VECTORS", f64::from(shape.hidden_vectors())),
             ];
-            self.deform_interface.pipeline(gpu, "deform", &constants)
+            self.deform_interface(gpu, shape.precision).pipeline(gpu, "deform", &constants)
         };
         pipelines.entry(shape).or_insert_with(make).clone()
     }

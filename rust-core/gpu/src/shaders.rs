@@ -90,6 +90,24 @@ pub const DEFORM: Shader = Shader {
         TRIGONOMETRY,
         DEFORMATION,
         DEFORM_SPLAT,
+        wgsl!("common/hidden_single"),
+        wgsl!("deform"),
+    ],
+};
+/// The deformation network with weights and hidden vectors in half precision; only where the device
+/// has it.
+pub const DEFORM_HALF: Shader = Shader {
+    name: "deform_half",
+    parts: &[
+        wgsl!("common/enable_half"),
+        DISPATCH,
+        COUNTERS,
+        FRAME,
+        NUMBERS,
+        TRIGONOMETRY,
+        DEFORMATION,
+        DEFORM_SPLAT,
+        wgsl!("common/hidden_half"),
         wgsl!("deform"),
     ],
 };
@@ -229,7 +247,7 @@ pub const ALL: [Shader; 18] = [
 ];
 
 /// Shaders that need features which not every device has.
-pub const OPTIONAL: [Shader; 1] = [DEFORM_MATRIX];
+pub const OPTIONAL: [Shader; 2] = [DEFORM_HALF, DEFORM_MATRIX];
 
 /// The common files behind the positional encoding, for its test.
 #[cfg(test)]

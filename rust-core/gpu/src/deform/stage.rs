@@ -6,7 +6,7 @@ use glam::DVec3;
 use trapeze_scene::deformation::{PositionHead, RotationRule};
 use trapeze_scene::{DeformationNetwork, Scene};
 
-use super::matrix;
+use super::half;
 use super::weights::PackedWeights;
 use crate::kernel::{Interface, whole};
 use crate::kernels::NetworkShape;
@@ -20,13 +20,14 @@ use crate::{Gpu, GpuError, readback};
 const SPLATS_PER_GROUP: u32 = 16;
 
 /// Arithmetic of the deformation network. Positions are encoded in 32 bits in either.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum NetworkPrecision {
     /// 32-bit weights and hidden vectors.
     #[default]
     Single,
-    /// 16-bit weights and hidden vectors, summed in 32 bits, on devices with cooperative matrices
-    /// on which it has been found to agree with the 32-bit kernel; elsewhere as `Single`.
+    /// 16-bit weights and hidden vectors, summed in 32 bits: on cooperative matrices where the device
+    /// has them, else with its 16-bit floats. Each kernel is used only once it has been found to
+    /// agree with the 32-bit one on the device and the network at hand; without any, as `Single`.
     Half,
 }
 
@@ -93,6 +94,7 @@ impl DeformStage {
             width: packed.width as u32,
             input_rows: packed.input_rows as u32,
             splats: SPLATS_PER_GROUP,
+            precision: NetworkPrecision::Single,
         };
         let bytes = u64::from(buffers.count) * size_of::<Pose>() as u64;
         if bytes > gpu.max_binding() {
@@ -126,24 +128,35 @@ impl DeformStage {
             name: "f32",
             pipeline: kernels.deform(gpu, shape),
             bind_group: bind(
-                &kernels.deform_interface,
+                kernels.deform_interface(gpu, NetworkPrecision::Single),
                 &gpu.storage_of("weights", &packed.weights)?,
             ),
             splats: shape.splats,
         };
-        let wants_half = precision == NetworkPrecision::Half && matrix::fits(gpu, &packed);
-        let matrix = match matrix::half_weights(&packed).filter(|_| wants_half) {
-            None => None,
-            Some(weights) => {
+        let half_weights = match precision {
+            NetworkPrecision::Half if half::has_halves(gpu) => half::half_weights(&packed),
+            _ => None,
+        };
+        let mut faster = Vec::new();
+        if let Some(weights) = half_weights {
+            let weights = gpu.storage_of("half weights", &weights)?;
+            if half::fits(gpu, &packed) {
                 let (interface, pipeline) = kernels.deform_matrix(gpu);
-                Some(NetworkKernel {
+                faster.push(NetworkKernel {
                     name: "f16 matrices",
                     pipeline: pipeline.clone(),
-                    bind_group: bind(interface, &gpu.storage_of("half weights", &weights)?),
-                    splats: matrix::MATRIX_SPLATS,
-                })
+                    bind_group: bind(interface, &weights),
+                    splats: half::MATRIX_SPLATS,
+                });
             }
-        };
+            let shape = NetworkShape { precision: NetworkPrecision::Half, ..shape };
+            faster.push(NetworkKernel {
+                name: "f16",
+                pipeline: kernels.deform(gpu, shape),
+                bind_group: bind(kernels.deform_interface(gpu, shape.precision), &weights),
+                splats: shape.splats,
+            });
+        }
         let mut stage = Self {
             count: buffers.count,
             has_motion: buffers.has_motion,
@@ -158,8 +171,10 @@ impl DeformStage {
             counts: counts.clone(),
             shown: None,
         };
-        if let Some(matrix) = matrix {
-            stage.use_if_it_agrees(gpu, matrix, &buffers.canonical_poses)?;
+        for kernel in faster {
+            if stage.use_if_it_agrees(gpu, kernel, &buffers.canonical_poses)? {
+                break;
+            }
         }
         if stage.has_motion {
             let initial = stage.initial_poses(gpu, bytes)?;
@@ -178,13 +193,14 @@ impl DeformStage {
         Ok(stage)
     }
 
-    /// Replaces the network's kernel by another one, when both pose the first splats alike.
+    /// Replaces the network's kernel by another one, when both pose the first splats alike; `false`
+    /// when they do not.
     fn use_if_it_agrees(
         &mut self,
         gpu: &Gpu,
         candidate: NetworkKernel,
         canonical: &wgpu::Buffer,
-    ) -> Result<(), GpuError> {
+    ) -> Result<bool, GpuError> {
         const CHECKED: u32 = 4096;
         const CHECK_TIME: f32 = 0.37;
         let checked = u64::from(self.count.min(CHECKED));
@@ -195,11 +211,12 @@ impl DeformStage {
         self.invalidate();
         let ours = self.evaluate_at(gpu, CHECK_TIME, checked)?;
         self.invalidate();
-        if !matrix::agrees(&canonical, &plain, &ours) {
+        let agrees = half::agrees(&canonical, &plain, &ours);
+        if !agrees {
             tracing::warn!("the {name} network differs from the plain one on this device");
             self.network = before;
         }
-        Ok(())
+        Ok(agrees)
     }
 
     /// Poses of the first `count` splats at a time.

@@ -1,4 +1,4 @@
-//! The network on cooperative matrices: when it may be used, and whether it tells the truth.
+//! The network in half precision: when it may be used, and whether it tells the truth.
 
 use super::weights::PackedWeights;
 use crate::Gpu;
@@ -11,15 +11,20 @@ const MATRIX_WIDTH: usize = 256;
 /// Columns that it has for γ(xyz).
 const MATRIX_INPUTS: usize = 256;
 
-/// Whether device and network suit the kernel.
+/// Whether device and network suit the kernel on cooperative matrices.
 pub(super) fn fits(gpu: &Gpu, packed: &PackedWeights) -> bool {
     gpu.has_matrices() && packed.width == MATRIX_WIDTH && packed.input_rows <= MATRIX_INPUTS
 }
 
+/// Whether kernels may use 16-bit floats.
+pub(super) fn has_halves(gpu: &Gpu) -> bool {
+    gpu.features().contains(wgpu::Features::SHADER_F16)
+}
+
 /// Weights in half precision; those that a half cannot hold are refused.
 pub(super) fn half_weights(packed: &PackedWeights) -> Option<Vec<u16>> {
-    let halves: Vec<half::f16> =
-        packed.weights.iter().map(|&weight| half::f16::from_f32(weight)).collect();
+    let halves: Vec<::half::f16> =
+        packed.weights.iter().map(|&weight| ::half::f16::from_f32(weight)).collect();
     halves
         .iter()
         .all(|weight| weight.is_finite())
@@ -31,7 +36,7 @@ pub(super) fn half_weights(packed: &PackedWeights) -> Option<Vec<u16>> {
 /// about 1.
 const MAX_RELATIVE_ERROR: f64 = 0.02;
 
-/// Whether the poses of the matrix kernel are those of the plain kernel, up to rounding.
+/// Whether the poses of a half-precision kernel are those of the plain kernel, up to rounding.
 pub(super) fn agrees(canonical: &[Pose], plain: &[Pose], matrix: &[Pose]) -> bool {
     let mut motion = 0.0;
     let mut error = 0.0;
