@@ -20,6 +20,7 @@ mod readback;
 mod region;
 mod renderer;
 mod scene_buffers;
+mod self_check;
 pub mod shaders;
 mod sort;
 mod stage_pass;
@@ -38,6 +39,7 @@ pub use harmonics::HarmonicsStorage;
 pub use memory::{MemoryPlan, MemoryRequest, PlannedBuffer, SceneSize};
 pub use parameters::{ParameterArray, ParameterBuffers};
 pub use renderer::{Pick, PickTicket, Renderer, RendererOptions};
+pub use self_check::{Against, Check, Checked, SelfCheckReport, self_check};
 pub use surface::{Presented, SurfaceOptions, WindowSurface};
 pub use timing::StageTimes;
 
