@@ -108,6 +108,23 @@ import Testing
     #expect(await window.drawn().count == before + 1)
   }
 
+  @Test func theLayerHasTheSizeOfTheFrames() async throws {
+    let window = try Window(engine: TestEngine(scene: .twoObjects(motion: 0)))
+    await window.open()
+    let layer = LayerPointer(UnsafeMutableRawPointer.allocate(byteCount: 1, alignment: 1))
+    defer { layer.address.deallocate() }
+    window.viewer.loop.setLayer(layer)
+    _ = await window.rest()
+    window.viewer.orbit(by: SIMD2(9, 0))
+    _ = await window.rest()
+    #expect(await window.renderer?.attachments == [SIMD2(800, 600)])
+    window.viewer.condition = DeviceCondition(heat: .critical)
+    _ = await window.rest()
+    #expect(await window.renderer?.attachments.last == SIMD2(400, 300))
+    await window.viewer.loop.removeLayer(layer)
+    #expect(await window.renderer?.attachments.last == .some(nil))
+  }
+
   @Test func resolutionAndRateFollowHeatAndPower() {
     #expect(ResolutionPolicy(DeviceCondition()).maxFramesPerSecond == 120)
     #expect(ResolutionPolicy(DeviceCondition(), displayMaximum: 60).maxFramesPerSecond == 60)

@@ -35,7 +35,7 @@ import Testing
     await search.settle()
     #expect(search.results.map(\.id) == [3])
     #expect(search.results.first?.score == 1 && search.results.first?.thumbnail != nil)
-    search.settings.threshold = -1
+    search.settings.threshold = 0
     #expect(search.results.map(\.id) == [3, 70])
     search.settings.topK = 1
     #expect(search.results.map(\.id) == [3])
@@ -48,7 +48,7 @@ import Testing
   @Test func scopeLimitsWhatIsFound() async throws {
     let window = try await encoded()
     let search = window.scene.search
-    search.settings.threshold = -1
+    search.settings.threshold = 0
     search.text = "red"
     await search.settle()
     window.scene.selection.setVisible(false, 3)
@@ -105,7 +105,7 @@ import Testing
   @Test func deletedClustersLeaveTheResults() async throws {
     let window = try await encoded()
     let search = window.scene.search
-    search.settings.threshold = -1
+    search.settings.threshold = 0
     search.text = "red"
     await search.settle()
     window.scene.selection.choose([3])

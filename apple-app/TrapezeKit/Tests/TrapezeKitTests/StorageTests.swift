@@ -120,6 +120,22 @@ import Testing
 }
 
 @MainActor @Suite struct AppModelTests {
+  @Test func onesOwnModelsComeBeforeTheBundledOnes() throws {
+    let folder = try TemporaryFolder()
+    let bundled = URL(filePath: "/bundled")
+    let app = AppModel(
+      engine: TestEngine(),
+      system: .init(
+        beginBackgroundTask: { 0 }, endBackgroundTask: { _ in }, setIdleSleep: { _ in }),
+      sampleScene: nil, bundledModels: bundled, data: folder.url)
+    #expect(app.models == bundled)
+    try FileManager.default.createDirectory(
+      at: app.modelFolder, withIntermediateDirectories: true)
+    #expect(app.models == bundled)
+    try Data().write(to: app.modelFolder.appending(path: "model.json"))
+    #expect(app.models == app.modelFolder)
+  }
+
   private func app(_ folder: TemporaryFolder) -> AppModel {
     AppModel(
       engine: TestEngine(),

@@ -22,7 +22,12 @@ actor TestRenderer: RenderEngine {
   func setScene(_ scene: any SceneEngine) { self.scene = scene as? TestScene }
   func repeatFrames(_ count: Int) { repeats = count }
 
-  func attach(_ layer: LayerPointer?, width: Int, height: Int) async throws {}
+  /// Layers that were attached, with their sizes; `nil` for none.
+  private(set) var attachments: [SIMD2<Int>?] = []
+
+  func attach(_ layer: LayerPointer?, width: Int, height: Int) async throws {
+    attachments.append(layer == nil ? nil : SIMD2(width, height))
+  }
 
   nonisolated func show(
     _ scene: any SceneEngine, options: RendererOptions

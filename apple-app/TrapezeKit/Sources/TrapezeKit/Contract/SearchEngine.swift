@@ -37,7 +37,7 @@ public struct SearchIndex: Sendable {
 /// A cluster that matches.
 public struct SearchHit: Sendable, Equatable, Identifiable {
   public var cluster: ClusterID
-  /// Cosine of the angle between the embeddings, −1 to 1.
+  /// How well it matches, 0 to 1: the text's share against the model's background texts.
   public var score: Double
 
   public var id: ClusterID { cluster }

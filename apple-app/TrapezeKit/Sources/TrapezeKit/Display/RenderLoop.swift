@@ -25,6 +25,9 @@ public final class RenderLoop {
   private var engine: (any RenderEngine)?
   private var onScreen: FrameRequest?
   private var inFlight: Task<Void, Never>?
+  private var layer: LayerPointer?
+  /// The layer and size that the engine draws onto now.
+  private var attached: (layer: LayerPointer, width: Int, height: Int)?
   private var isWatching = false
   /// Counts what invalidates a frame on its way: another engine, another size of the layer.
   private var generation = 0
@@ -45,7 +48,24 @@ public final class RenderLoop {
 
   public func setEngine(_ engine: (any RenderEngine)?) {
     self.engine = engine
+    attached = nil
     invalidate()
+  }
+
+  /// Draws onto this layer from the next frame on. Its drawables have the size of the frames.
+  public func setLayer(_ layer: LayerPointer) {
+    self.layer = layer
+    invalidate()
+  }
+
+  /// Lets go of the layer, and returns once nothing is drawn onto it any more.
+  public func removeLayer(_ layer: LayerPointer) async {
+    guard self.layer == layer else { return }
+    self.layer = nil
+    attached = nil
+    await settle()
+    // A layer that cannot be detached belongs to a device that is lost.
+    try? await engine?.attach(nil, width: 0, height: 0)
   }
 
   /// What is on the screen is out of date for a reason that the request does not show.
@@ -75,12 +95,21 @@ public final class RenderLoop {
     inFlight = Task { [weak self] in
       let result: Result<DrawReport, any Error>
       do {
+        try await self?.attachLayer(to: engine, request.camera)
         result = .success(try await engine.draw(request))
       } catch {
         result = .failure(error)
       }
       self?.finish(request, result, generation, moment)
     }
+  }
+
+  private func attachLayer(to engine: any RenderEngine, _ camera: Camera) async throws {
+    guard let layer else { return }
+    let wanted = (layer: layer, width: camera.width, height: camera.height)
+    if let attached, attached == wanted { return }
+    try await engine.attach(layer, width: wanted.width, height: wanted.height)
+    attached = wanted
   }
 
   private func finish(

@@ -16,7 +16,7 @@ public final class AppModel {
   @ObservationIgnored private let trainingLifeCycle: TrainingLifeCycle
 
   /// Files that can be opened, by extension.
-  public static let sceneExtensions = ["ply", "spz", "splat", "sog"]
+  public nonisolated static let sceneExtensions = ["ply", "spz", "splat", "sog"]
 
   public init(
     engine: any Engine, system: LifeCycle.System, sampleScene: URL?, bundledModels: URL? = nil,
@@ -40,10 +40,10 @@ public final class AppModel {
   /// Where a person puts the models for text search.
   public let modelFolder: URL
   /// The small ones that come with the app.
-  private let bundledModels: URL?
+  @ObservationIgnored private let bundledModels: URL?
 
-  /// A person's own models, else those of the app.
-  private var models: URL? {
+  /// A person's own models, else the app's; where they would be when there are neither.
+  var models: URL {
     let own = try? FileManager.default.contentsOfDirectory(atPath: modelFolder.path)
     return own?.isEmpty == false ? modelFolder : bundledModels ?? modelFolder
   }

@@ -44,12 +44,12 @@ public struct SearchSettings: Sendable, Equatable {
     public var id: Self { self }
   }
 
-  public static let thresholds = -1.0...1.0
+  public static let thresholds = 0.0...1.0
   public static let counts = 1...100
 
   public var scope = Scope.all
-  /// Lowest cosine that counts as a match.
-  public var threshold = 0.15 {
+  /// Lowest score that counts as a match.
+  public var threshold = 0.5 {
     didSet { threshold = clamped(threshold, Self.thresholds) }
   }
   /// Most results.

@@ -16,7 +16,7 @@ public final class SearchModel {
   /// A match, as it is listed.
   public struct Result: Equatable, Identifiable {
     public var row: ClusterRow
-    /// Cosine, −1 to 1.
+    /// 0 to 1.
     public var score: Double
     public var thumbnail: RenderedImage?
 
