@@ -4,6 +4,8 @@ import Testing
 @testable import TrapezeKit
 
 @MainActor @Suite struct LifeCycleTests {
+  private let window = ObjectIdentifier(Log.self)
+
   final class Log { var entries: [String] = [] }
 
   private func system(_ log: Log) -> LifeCycle.System {
@@ -29,14 +31,14 @@ import Testing
     let cycle = LifeCycle(system: system(log))
     let participant = Participant(log)
     cycle.add(participant)
-    cycle.enterBackground()
+    cycle.enterBackground(window: window)
     await cycle.settle()
     #expect(log.entries == ["begin", "suspend", "end 7"])
     #expect(cycle.state == .suspended)
-    cycle.enterBackground()
+    cycle.enterBackground(window: window)
     await cycle.settle()
     #expect(log.entries.count == 3)
-    cycle.enterForeground()
+    cycle.enterForeground(window: window)
     await cycle.settle()
     #expect(log.entries.last == "resume" && cycle.state == .active)
   }
@@ -46,12 +48,26 @@ import Testing
     let cycle = LifeCycle(system: system(log))
     let participant = Participant(log)
     cycle.add(participant)
-    cycle.enterBackground()
+    cycle.enterBackground(window: window)
     await Task.yield()
-    cycle.enterForeground()
+    cycle.enterForeground(window: window)
     await cycle.settle()
     #expect(log.entries == ["begin", "suspend", "end 7", "resume"])
     #expect(cycle.state == .active)
+  }
+
+  @Test func workGoesOnWhileOneWindowIsInFront() async {
+    let log = Log()
+    let cycle = LifeCycle(system: system(log))
+    let other = ObjectIdentifier(Participant.self)
+    cycle.enterForeground(window: window)
+    cycle.enterForeground(window: other)
+    cycle.enterBackground(window: other)
+    await cycle.settle()
+    #expect(cycle.state == .active && log.entries.isEmpty)
+    cycle.enterBackground(window: window)
+    await cycle.settle()
+    #expect(cycle.state == .suspended)
   }
 
   @Test func aMemoryWarningReachesTheRenderer() async throws {
@@ -64,22 +80,39 @@ import Testing
   }
 
   @Test func theRendererRestsInTheBackgroundAndSettingsAreKept() async throws {
-    let window = try Window()
-    await window.open()
+    let screen = try Window()
+    await screen.open()
     let cycle = LifeCycle(system: system(Log()))
-    cycle.add(window.scene)
-    window.viewer.display.mode = .depth
-    cycle.enterBackground()
+    cycle.add(screen.scene)
+    screen.viewer.display.mode = .depth
+    cycle.enterBackground(window: window)
     await cycle.settle()
-    #expect(await window.renderer?.isSuspended == true)
+    #expect(await screen.renderer?.isSuspended == true)
     let files = try FileManager.default.contentsOfDirectory(
-      atPath: window.folder.url.appending(path: "Scenes").path)
+      atPath: screen.folder.url.appending(path: "Scenes").path)
     #expect(files.count == 1)
-    cycle.enterForeground()
+    cycle.enterForeground(window: window)
     await cycle.settle()
-    #expect(await window.renderer?.isSuspended == false)
-    await window.tick()
-    #expect(await window.drawn().last?.mode == .depth)
+    #expect(await screen.renderer?.isSuspended == false)
+    await screen.tick()
+    #expect(await screen.drawn().last?.mode == .depth)
+  }
+
+  @Test func aVideoStopsBeforeTheBackground() async throws {
+    let screen = try Window()
+    await screen.open()
+    await screen.engine.gate.close()
+    let writer = FrameCollector()
+    let request = try #require(screen.viewer.request)
+    let renderer = try #require(screen.renderer)
+    screen.scene.movie.record(
+      request, pose: screen.viewer.camera.pose, viewport: Viewport(width: 8, height: 8),
+      with: renderer, to: writer
+    ) { _ in }
+    await screen.yield()
+    await screen.scene.suspend()
+    #expect(!screen.scene.movie.isRecording)
+    #expect(await writer.isDiscarded)
   }
 
   @Test func trainingIsSavedInTheBackgroundAndKeepsTheDeviceAwake() async throws {
@@ -98,20 +131,20 @@ import Testing
     }
     cycle.refreshSleep()
     #expect(log.entries == ["sleep false"])
-    cycle.enterBackground()
+    cycle.enterBackground(window: window)
     await cycle.settle()
     #expect(training.phase == .paused)
     #expect(await engine.trainer.checkpoints.count == 1)
     #expect(log.entries == ["sleep false", "begin", "sleep true", "end 7"])
-    cycle.enterForeground()
+    cycle.enterForeground(window: window)
     await cycle.settle()
     await Task.yield()
     #expect(training.isRunning)
     await training.pause()
     // A person's own pause stays one.
-    cycle.enterBackground()
+    cycle.enterBackground(window: window)
     await cycle.settle()
-    cycle.enterForeground()
+    cycle.enterForeground(window: window)
     await cycle.settle()
     #expect(training.phase == .paused)
   }

@@ -34,10 +34,10 @@ public struct TrapezeWindow: View {
 
   private func changed(to phase: ScenePhase) {
     switch phase {
-    case .active: app.lifeCycle.enterForeground()
+    case .active: app.lifeCycle.enterForeground(window: ObjectIdentifier(scene))
     // A Mac's window in the background may be in plain view.
     #if canImport(UIKit)
-      case .background: app.lifeCycle.enterBackground()
+      case .background: app.lifeCycle.enterBackground(window: ObjectIdentifier(scene))
     #else
       case .background: scene.saveSettings()
     #endif

@@ -41,6 +41,8 @@ public final class LifeCycle {
   public private(set) var state = State.active
   @ObservationIgnored private let system: System
   @ObservationIgnored private var participants: [WeakParticipant] = []
+  /// Those in the foreground.
+  @ObservationIgnored private var windows: Set<ObjectIdentifier> = []
   @ObservationIgnored private var wantsToBeActive = true
   @ObservationIgnored private var transition: Task<Void, Never>?
   @ObservationIgnored private var allowsSleep = true
@@ -59,12 +61,15 @@ public final class LifeCycle {
     participants.append(WeakParticipant(value: participant))
   }
 
-  public func enterBackground() {
-    wantsToBeActive = false
+  /// A window has left the screen. Work stops with the last one: an iPad shows several.
+  public func enterBackground(window: ObjectIdentifier) {
+    windows.remove(window)
+    wantsToBeActive = !windows.isEmpty
     settleState()
   }
 
-  public func enterForeground() {
+  public func enterForeground(window: ObjectIdentifier) {
+    windows.insert(window)
     wantsToBeActive = true
     settleState()
   }
@@ -119,6 +124,8 @@ extension SceneModel: LifeCycleParticipant {
     saveSettings()
     tuning.cancel()
     await tuning.settle()
+    movie.cancel()
+    await movie.settle()
     search.cancelEncoding()
     await search.settle()
     await viewer.loop.suspend()
@@ -127,6 +134,20 @@ extension SceneModel: LifeCycleParticipant {
   public func resume() async { await viewer.loop.resume() }
 
   public func shedMemory() async { await viewer.renderer?.shedMemory() }
+}
+
+extension SelfCheckModel: LifeCycleParticipant {
+  public var preventsSleep: Bool { isRunning }
+
+  public func suspend() async {
+    cancel()
+    await settle()
+  }
+
+  /// A check that was interrupted measured nothing; whoever wants it runs it again.
+  public func resume() async {}
+
+  public func shedMemory() async {}
 }
 
 /// A run as the life cycle sees it: paused in the background, and going on afterwards if it was
@@ -145,6 +166,8 @@ public final class TrainingLifeCycle: LifeCycleParticipant {
   public func suspend() async {
     resumes = training.canPause
     await training.pause()
+    // A picture of it may be on its way still.
+    await training.settle()
   }
 
   public func resume() async {

@@ -35,6 +35,7 @@ public final class AppModel {
     self.bundledModels = bundledModels
     trainingLifeCycle = TrainingLifeCycle(training)
     lifeCycle.add(trainingLifeCycle)
+    lifeCycle.add(selfCheck)
   }
 
   /// Where a person puts the models for text search.

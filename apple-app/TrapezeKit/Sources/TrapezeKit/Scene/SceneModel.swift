@@ -23,6 +23,7 @@ public final class SceneModel {
   public let search: SearchModel
   public let export = ExportModel()
   public let tuning = TuningModel()
+  public let movie = MovieModel()
 
   @ObservationIgnored private let engine: any Engine
   @ObservationIgnored private let settings: SettingsStore
@@ -173,6 +174,7 @@ public final class SceneModel {
     search.close()
     edits.close()
     export.cancel()
+    movie.cancel()
     tuning.close()
     viewer.close()
     selection.update(rows: [])

@@ -58,6 +58,12 @@ public final class ViewerModel {
     ResolutionPolicy(condition, displayMaximum: displayMaximum)
   }
 
+  /// Boxes to draw over the picture; empty while things move.
+  public var outlines: [Bounds] {
+    let isStill = restingTime != nil || scene?.summary.isDeformable == false
+    return isStill ? chosenBounds.sorted { $0.key < $1.key }.map(\.value) : []
+  }
+
   private var isAnimating: Bool {
     camera.isMoving || (playback.isRunning && scene?.summary.isDeformable == true)
   }
@@ -158,6 +164,11 @@ public final class ViewerModel {
     guard let all else { return false }
     camera.focus(on: all, in: viewport)
     return true
+  }
+
+  /// The time that is shown while it stands still: outlines of moving things would lag behind.
+  public var restingTime: Double? {
+    playback.isPlaying || playback.clock.isScrubbing ? nil : playback.time
   }
 
   /// Where what is chosen is now: for the outlines.

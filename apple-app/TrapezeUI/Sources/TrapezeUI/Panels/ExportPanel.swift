@@ -6,8 +6,9 @@ import TrapezeKit
 struct ExportPanel: View {
   let scene: SceneModel
   @State private var format = ExportFormat.ply
-  @State private var movie = MovieModel()
   @State private var finished: URL?
+
+  private var movie: MovieModel { scene.movie }
 
   var body: some View {
     Form {

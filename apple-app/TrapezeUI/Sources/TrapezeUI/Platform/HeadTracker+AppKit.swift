@@ -12,7 +12,7 @@
 
     func start(for parallax: ParallaxModel) {
       updates = Task { [camera] in
-        guard await AVCaptureDevice.requestAccess(for: .video), camera.start() else {
+        guard await AVCaptureDevice.requestAccess(for: .video), await camera.start() else {
           parallax.source = .off
           return
         }
@@ -43,12 +43,14 @@
       }
     }
 
-    /// Returns whether there is a camera.
-    func start() -> Bool {
-      queue.sync {
-        if session.inputs.isEmpty, !connect() { return false }
-        session.startRunning()
-        return true
+    /// Returns whether there is a camera. It takes a moment to start.
+    func start() async -> Bool {
+      await withCheckedContinuation { started in
+        queue.async {
+          let isConnected = !self.session.inputs.isEmpty || self.connect()
+          if isConnected { self.session.startRunning() }
+          started.resume(returning: isConnected)
+        }
       }
     }
 

@@ -6,11 +6,16 @@ struct OutlineOverlay: View {
   let viewer: ViewerModel
 
   var body: some View {
+    // Reading the camera only where there is something to draw: it changes with every frame.
+    if !viewer.outlines.isEmpty || viewer.cropBox != nil { canvas }
+  }
+
+  private var canvas: some View {
     Canvas { context, _ in
       guard let camera = viewer.request?.camera, viewer.viewport.width > 0 else { return }
       // The camera may be drawn at less than the display's resolution.
       let scale = viewer.viewport.width / Double(camera.width)
-      for (_, bounds) in viewer.chosenBounds {
+      for bounds in viewer.outlines {
         context.stroke(path(bounds, camera, scale), with: .color(.accentColor), lineWidth: 1.5)
       }
       if let box = viewer.cropBox {

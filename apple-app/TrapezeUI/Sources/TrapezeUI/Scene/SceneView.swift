@@ -41,7 +41,7 @@ struct SceneView: View {
     .onChange(of: scene.selection.state.chosen) {
       Task { await scene.viewer.refreshChosenBounds() }
     }
-    .onChange(of: scene.playback.isPlaying) {
+    .onChange(of: scene.viewer.restingTime) {
       Task { await scene.viewer.refreshChosenBounds() }
     }
   }
