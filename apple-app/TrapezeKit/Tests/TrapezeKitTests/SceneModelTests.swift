@@ -63,6 +63,8 @@ import Testing
       #expect(Failure(.opening, EngineError(code, "x"))?.reason == "x")
     }
     #expect(Failure(.opening, CancellationError()) == nil)
+    #expect(Failure(.opening, CocoaError(.userCancelled)) == nil)
+    #expect(Failure(.exporting, CocoaError(.fileWriteOutOfSpace))?.advice == .freeStorage)
     #expect(Failure(.training, EngineError(.outOfMemory, "x"))?.advice == .lowerQuality)
   }
 
@@ -141,6 +143,8 @@ import Testing
     #expect(window.viewer.request?.staticThreshold == nil)
     window.viewer.display.masksStatic = true
     #expect(window.viewer.request?.staticThreshold == 0.45)
+    window.viewer.display.staticPercentile = 20
+    #expect(window.viewer.request?.staticThreshold == 0.2)
   }
 
   @Test func editsUndoAndRedo() async throws {

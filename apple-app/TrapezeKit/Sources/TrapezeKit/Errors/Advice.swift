@@ -1,3 +1,5 @@
+import Foundation
+
 /// What a person can do about a failure. The texts belong to the views.
 public enum Advice: String, Sendable, CaseIterable {
   case chooseAnotherFile
@@ -53,13 +55,14 @@ public struct Failure: Sendable, Equatable, Identifiable {
   /// `nil` for a cancellation: a person asked for it and needs no alert.
   public init?(_ task: FailedTask, _ error: any Error) {
     if error is CancellationError { return nil }
+    if (error as? CocoaError)?.code == .userCancelled { return nil }
     if let error = error as? EngineError {
       let advice =
         task == .training && error.code == .outOfMemory ? .lowerQuality : Advice(error.code)
       self.init(task: task, reason: error.message, advice: advice)
     } else {
       self.init(
-        task: task, reason: String(describing: error),
+        task: task, reason: error.localizedDescription,
         advice: task == .exporting || task == .capturing ? .freeStorage : .tryAgain)
     }
   }

@@ -22,6 +22,8 @@ public final class ViewerModel {
 
   @ObservationIgnored public private(set) var loop: RenderLoop!
   @ObservationIgnored private var lastMoment: Double?
+  @ObservationIgnored private var keptThreshold:
+    (scene: any SceneEngine, percentile: Double, value: Float?)?
   @ObservationIgnored private var framingPending = false
   @ObservationIgnored var didFail: @MainActor (any Error) -> Void = { _ in }
   private(set) var scene: (any SceneEngine)?
@@ -49,9 +51,19 @@ public final class ViewerModel {
       time: scene.summary.isDeformable ? playback.time : 0,
       mode: display.mode,
       visibility: selection.state.visibility,
-      staticThreshold: display.masksStatic
-        ? scene.staticThreshold(percentile: display.staticPercentile) : nil,
+      staticThreshold: display.masksStatic ? staticThreshold(of: scene) : nil,
       background: display.background)
+  }
+
+  /// Kept from frame to frame: the core looks through all motion values for it.
+  private func staticThreshold(of scene: any SceneEngine) -> Float? {
+    let percentile = display.staticPercentile
+    if let kept = keptThreshold, kept.scene === scene, kept.percentile == percentile {
+      return kept.value
+    }
+    let value = scene.staticThreshold(percentile: percentile)
+    keptThreshold = (scene, percentile, value)
+    return value
   }
 
   public var policy: ResolutionPolicy {
@@ -97,6 +109,7 @@ public final class ViewerModel {
   func close() {
     scene = nil
     renderer = nil
+    keptThreshold = nil
     chosenBounds = [:]
     cropBox = nil
     parallax.source = .off
