@@ -21,7 +21,7 @@ import torch
 from torch.nn.functional import normalize
 
 from search_model.attributes import Look, claim_table, look_table, truth_table
-from search_model.captions import BACKGROUND, TEMPLATES, UNKNOWN, describe, encode, load_tokens, nonsense
+from search_model.captions import BACKGROUND, TEMPLATES, describe, encode, load_tokens, nonsense
 from search_model.crops import render_crops
 from search_model.networks import SIZE, Calibrated, ImageTower, TextTower
 from search_model.objects import make_splats
@@ -160,43 +160,6 @@ def train(model: Model, arguments, device: torch.device) -> Model:
     return run.average
 
 
-def refine(model: Model, arguments, device: torch.device) -> Model:
-    """The text tower and the image tower's head, the convolutions as they are: what those see in
-    `--refine` objects is computed once. Affordable without a GPU."""
-    dataset, rng = Texts(arguments.objects, 0.25, arguments.seed), random.Random(arguments.seed)
-    looks = [random_look(rng, held_out=False) for _ in range(arguments.refine)]
-    pooled = pooled_features(model, look_table(looks), arguments.splats, device)
-    background = background_rows(dataset)
-    trained = [*model.image.head.parameters(), *model.text.parameters(), *model.score.parameters()]
-    run = Run(model, trained, arguments)
-    while run.goes_on():
-        chosen = rng.sample(range(len(looks)), arguments.objects)
-        batch = [looks[i] for i in chosen]
-        tokens, claims = dataset.about(batch, rng)
-        truth = truth_table(claims, look_table(batch)).to(device)
-        image = with_mean(model.image.head(pooled[torch.tensor(chosen, device=device)]))
-        tokens = torch.cat([tokens, background])
-        tokens = tokens[:, : int((tokens != 0).sum(1).max())]
-        text = normalize(model.text(tokens.to(device)), dim=-1)
-        run.update(search_loss(model, image, text, truth))
-    print(f"{run.step} steps of {arguments.objects} of {len(looks)} objects", flush=True)
-    return run.average
-
-
-@torch.no_grad()
-def pooled_features(
-    model: Model, looks: torch.Tensor, splats: int, device: torch.device
-) -> torch.Tensor:
-    """[n, views, 320] of fresh objects."""
-    model.image.eval()
-    parts = []
-    for part in looks.split(64):
-        crops = render_crops(make_splats(part, splats, device), VIEWS, SIZE)
-        parts.append(model.image.pooled(crops).view(len(part), VIEWS, -1))
-    print(f"{len(looks)} objects seen", flush=True)
-    return torch.cat(parts)
-
-
 @torch.no_grad()
 def update_average(average: Model, model: Model, keep: float) -> None:
     for to, new in [(average.parameters(), model.parameters()), (average.buffers(), model.buffers())]:
@@ -258,7 +221,6 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("--start", type=pathlib.Path, help="checkpoint to go on from")
-    parser.add_argument("--refine", type=int, metavar="OBJECTS", help="train no convolutions")
     parser.add_argument("--seconds", type=float, default=260)
     parser.add_argument("--steps", type=int, default=10**9)
     parser.add_argument("--objects", type=int, default=512, help="per step")
@@ -279,7 +241,7 @@ def main() -> None:
     model.image.to(memory_format=torch.channels_last)
     if arguments.start is not None:
         model.load_state_dict(torch.load(arguments.start, weights_only=True)["model"])
-    average = (refine if arguments.refine else train)(model, arguments, device)
+    average = train(model, arguments, device)
     state = {"model": {name: value.cpu() for name, value in average.state_dict().items()}}
     torch.save(state, arguments.out)
     state["evaluation"] = evaluate(average, device, arguments.scenes, arguments.splats)

@@ -21,7 +21,7 @@ except ImportError:
 
 LOW_PASS = 0.3  # px²
 LEAST_ALPHA = 1 / 255
-TILE = 32
+TILE = 16
 
 
 @dataclass
@@ -153,4 +153,4 @@ def _blend_on_gpu(packed: torch.Tensor, image: torch.Tensor) -> None:
     if size % TILE:
         raise ValueError(f"size: expected a multiple of {TILE}, found {size}")
     tiles = (size // TILE) ** 2
-    _blend_tiles[(len(packed), tiles)](packed, image, packed.shape[1], size, TILE, num_warps=8)
+    _blend_tiles[(len(packed), tiles)](packed, image, packed.shape[1], size, TILE)

@@ -44,13 +44,9 @@ class ImageTower(nn.Module):
         )
         self.head = nn.Sequential(nn.Linear(320, 256), nn.ReLU(), nn.Linear(256, DIMENSION))
 
-    def pooled(self, image: torch.Tensor) -> torch.Tensor:
-        """What the head sees: mean and maximum over the last map, [n, 320]."""
-        x = self.body(image).flatten(2)
-        return torch.cat([x.mean(-1), x.amax(-1)], dim=-1)
-
     def forward(self, image: torch.Tensor) -> torch.Tensor:
-        return self.head(self.pooled(image))
+        x = self.body(image).flatten(2)
+        return self.head(torch.cat([x.mean(-1), x.amax(-1)], dim=-1))
 
 
 class TextLayer(nn.Module):
