@@ -1,64 +1,18 @@
-//! The device: choosing an adapter, and making its objects.
+//! The device.
+
+mod buffers;
+mod options;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
-use wgpu::util::DeviceExt;
-
 use crate::GpuError;
 use crate::kernels::Kernels;
 
-/// Limits and features that are used no further than this, to run as a weaker device would.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum DeviceProfile {
-    /// All that the adapter has.
-    #[default]
-    Full,
-    /// What every Apple GPU since A14 / M1 promises: 32 KiB of workgroup memory, 1 024 threads,
-    /// 29 storage buffers a stage; no assumption about subgroups.
-    Apple,
-    /// A weak device: no optional feature, 10 storage buffers, 16 KiB of workgroup memory, 256
-    /// threads, 128 MiB bindings.
-    Weak,
-}
-
-/// How to choose and open a device.
-#[derive(Clone, Debug, Default)]
-pub struct GpuOptions {
-    /// Part of the adapter's name, in any case; the fastest adapter for `None`.
-    pub adapter: Option<String>,
-    /// Limits to impose.
-    pub profile: DeviceProfile,
-    /// Most bytes of a single buffer, when lower than the adapter's limit; for tests of how large
-    /// scenes are taken apart.
-    pub max_buffer_bytes: Option<u64>,
-    /// Most bytes of a single binding, likewise.
-    pub max_binding_bytes: Option<u64>,
-}
-
-/// Objects created since the device was opened.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Created {
-    /// Buffers.
-    pub buffers: u64,
-    /// Their bytes.
-    pub buffer_bytes: u64,
-    /// Bind groups.
-    pub bind_groups: u64,
-    /// Pipelines.
-    pub pipelines: u64,
-    /// Times that the CPU waited for the GPU.
-    pub waits: u64,
-}
-
-#[derive(Debug, Default)]
-struct Counts {
-    buffers: AtomicU64,
-    buffer_bytes: AtomicU64,
-    bind_groups: AtomicU64,
-    pipelines: AtomicU64,
-    waits: AtomicU64,
-}
+use self::buffers::Counts;
+pub use self::buffers::Created;
+pub use self::options::{DeviceProfile, GpuOptions};
+use self::options::{check_limits, choose_adapter, imposed_limits, optional_features};
 
 /// An open GPU. Cheap to clone; every renderer on it shares one device and one queue.
 #[derive(Clone, Debug)]
@@ -81,13 +35,6 @@ struct Inner {
     /// The first error that nobody expected: a fault in this crate or in the driver.
     fault: Arc<OnceLock<String>>,
     kernels: OnceLock<Kernels>,
-}
-
-/// Features that make something faster or measurable, and are used where they exist.
-fn optional_features() -> wgpu::Features {
-    wgpu::Features::TIMESTAMP_QUERY
-        | wgpu::Features::SHADER_F16
-        | wgpu::Features::EXPERIMENTAL_COOPERATIVE_MATRIX
 }
 
 impl Gpu {
@@ -305,186 +252,7 @@ impl Gpu {
     pub(crate) fn kernels(&self) -> &Kernels {
         self.inner.kernels.get_or_init(|| Kernels::new(self))
     }
-
-    /// A buffer of at least `bytes`, zeroed.
-    ///
-    /// # Errors
-    /// [`GpuError::OutOfMemory`] when it is larger than a buffer may be, or than what is left.
-    pub fn buffer(
-        &self,
-        label: &'static str,
-        bytes: u64,
-        usage: wgpu::BufferUsages,
-    ) -> Result<wgpu::Buffer, GpuError> {
-        // wgpu refuses empty bindings, and structs of kernels are up to 48 bytes.
-        let size = bytes.max(256).next_multiple_of(16);
-        let have = self.limits().max_buffer_size;
-        if size > have {
-            return Err(GpuError::OutOfMemory { what: label, need: size, have });
-        }
-        self.count_buffer(size);
-        let scope = self.device().push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-        let buffer = self.device().create_buffer(&wgpu::BufferDescriptor {
-            label: Some(label),
-            size,
-            usage,
-            mapped_at_creation: false,
-        });
-        match pollster::block_on(scope.pop()) {
-            None => Ok(buffer),
-            Some(_) => Err(GpuError::OutOfMemory { what: label, need: size, have: 0 }),
-        }
-    }
-
-    /// A storage buffer of at least `bytes` that can also be copied from and written to.
-    ///
-    /// # Errors
-    /// Those of [`buffer`](Self::buffer).
-    pub fn storage(&self, label: &'static str, bytes: u64) -> Result<wgpu::Buffer, GpuError> {
-        let usage = wgpu::BufferUsages::STORAGE
-            | wgpu::BufferUsages::COPY_DST
-            | wgpu::BufferUsages::COPY_SRC;
-        self.buffer(label, bytes, usage)
-    }
-
-    /// A storage buffer that holds `data`.
-    ///
-    /// # Errors
-    /// Those of [`buffer`](Self::buffer), and [`GpuError::Device`] when the device is lost.
-    pub fn storage_of<T: bytemuck::NoUninit>(
-        &self,
-        label: &'static str,
-        data: &[T],
-    ) -> Result<wgpu::Buffer, GpuError> {
-        let buffer = self.storage(label, size_of_val(data) as u64)?;
-        self.write(&buffer, data)?;
-        Ok(buffer)
-    }
-
-    /// Writes `data` to the start of a buffer, before anything that is submitted from now on. Large
-    /// data go in pieces, with a wait now and then, so that the staging memory stays small.
-    ///
-    /// # Errors
-    /// [`GpuError::Device`] when the device is lost.
-    pub fn write<T: bytemuck::NoUninit>(
-        &self,
-        buffer: &wgpu::Buffer,
-        data: &[T],
-    ) -> Result<(), GpuError> {
-        let bytes: &[u8] = bytemuck::cast_slice(data);
-        for (i, piece) in bytes.chunks(UPLOAD_PIECE).enumerate() {
-            self.queue().write_buffer(buffer, (i * UPLOAD_PIECE) as u64, piece);
-            if i % 8 == 7 {
-                self.queue().submit([]);
-                self.wait()?;
-            }
-        }
-        Ok(())
-    }
-
-    /// A uniform buffer that holds `data` and can be written to.
-    pub fn uniform_of(&self, label: &'static str, data: &[u8]) -> wgpu::Buffer {
-        self.count_buffer(data.len() as u64);
-        self.device().create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some(label),
-            contents: data,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-        })
-    }
-
-    fn count_buffer(&self, bytes: u64) {
-        self.inner.created.buffers.fetch_add(1, Ordering::Relaxed);
-        self.inner.created.buffer_bytes.fetch_add(bytes, Ordering::Relaxed);
-    }
-
-    pub(crate) fn count_bind_group(&self) {
-        self.inner.created.bind_groups.fetch_add(1, Ordering::Relaxed);
-    }
-
-    pub(crate) fn count_pipeline(&self) {
-        self.inner.created.pipelines.fetch_add(1, Ordering::Relaxed);
-    }
 }
 
 /// Workgroup memory of deform_matrix.wgsl, bytes.
 const MATRIX_KERNEL_MEMORY: u32 = 16_896 * 2 + 2048 * 4;
-
-/// Bytes of one write of an upload.
-const UPLOAD_PIECE: usize = 16 << 20;
-
-fn choose_adapter(
-    instance: &wgpu::Instance,
-    surface: Option<&wgpu::Surface<'_>>,
-    options: &GpuOptions,
-) -> Result<wgpu::Adapter, GpuError> {
-    let none = |found: String| GpuError::NoAdapter {
-        expected: options.adapter.clone().unwrap_or_else(|| "a Vulkan or Metal device".into()),
-        found,
-    };
-    let Some(wanted) = &options.adapter else {
-        return pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions {
-            power_preference: wgpu::PowerPreference::HighPerformance,
-            compatible_surface: surface,
-            ..Default::default()
-        }))
-        .map_err(|e| none(e.to_string()));
-    };
-    let backends = wgpu::Backends::VULKAN | wgpu::Backends::METAL;
-    let adapters = pollster::block_on(instance.enumerate_adapters(backends));
-    let names: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
-    adapters
-        .into_iter()
-        .find(|a| a.get_info().name.to_lowercase().contains(&wanted.to_lowercase()))
-        .ok_or_else(|| none(names.join(", ")))
-}
-
-fn imposed_limits(adapter: wgpu::Limits, options: &GpuOptions) -> wgpu::Limits {
-    let mut limits = adapter;
-    match options.profile {
-        DeviceProfile::Full => {}
-        DeviceProfile::Apple => {
-            limits.max_compute_workgroup_storage_size =
-                limits.max_compute_workgroup_storage_size.min(32 << 10);
-            limits.max_compute_invocations_per_workgroup =
-                limits.max_compute_invocations_per_workgroup.min(1024);
-            limits.max_storage_buffers_per_shader_stage =
-                limits.max_storage_buffers_per_shader_stage.min(29);
-        }
-        DeviceProfile::Weak => {
-            limits.max_compute_workgroup_storage_size =
-                limits.max_compute_workgroup_storage_size.min(16 << 10);
-            limits.max_compute_invocations_per_workgroup =
-                limits.max_compute_invocations_per_workgroup.min(256);
-            limits.max_storage_buffers_per_shader_stage =
-                limits.max_storage_buffers_per_shader_stage.min(10);
-            limits.max_storage_buffer_binding_size =
-                limits.max_storage_buffer_binding_size.min(128 << 20);
-        }
-    }
-    if let Some(bytes) = options.max_buffer_bytes {
-        limits.max_buffer_size = limits.max_buffer_size.min(bytes);
-    }
-    if let Some(bytes) = options.max_binding_bytes {
-        limits.max_storage_buffer_binding_size = limits.max_storage_buffer_binding_size.min(bytes);
-    }
-    limits
-}
-
-/// What the kernels need at least.
-fn check_limits(adapter: &wgpu::Adapter, limits: &wgpu::Limits) -> Result<(), GpuError> {
-    let needs = [
-        ("storage buffers per stage", 9, u64::from(limits.max_storage_buffers_per_shader_stage)),
-        (
-            "workgroup memory in bytes",
-            16 << 10,
-            u64::from(limits.max_compute_workgroup_storage_size),
-        ),
-        ("threads per workgroup", 256, u64::from(limits.max_compute_invocations_per_workgroup)),
-    ];
-    match needs.into_iter().find(|&(_, need, have)| have < need) {
-        None => Ok(()),
-        Some((what, need, have)) => {
-            Err(GpuError::TooWeak { adapter: adapter.get_info().name, what, need, have })
-        }
-    }
-}

@@ -89,8 +89,3 @@ impl Counts {
         Self { visible: words[counter::VISIBLE], most_entries: words[counter::MOST_ENTRIES] }
     }
 }
-
-/// Reads the counts of the last frame, and waits for them.
-pub(crate) fn counts(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Counts, GpuError> {
-    Ok(Counts::from_words(&read::<u32>(gpu, buffer, counter::COUNT as u64)?))
-}

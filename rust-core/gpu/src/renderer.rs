@@ -1,15 +1,19 @@
 //! The stages put together.
 
+mod growth;
 mod measure;
+mod options;
 mod pick;
 
 use std::sync::Arc;
 
-pub use pick::{Pick, PickTicket};
-use trapeze_scene::{Camera, Frame, FrameSettings, NO_SPLAT, Scene, ShDegree};
+use trapeze_scene::{Camera, Frame, FrameSettings, NO_SPLAT, Scene};
+
+pub use self::options::RendererOptions;
+use self::pick::PickStage;
+pub use self::pick::{Pick, PickTicket};
 
 use crate::deform::{DeformStage, DeformWork, NetworkPrecision};
-use crate::harmonics::HarmonicsStorage;
 use crate::kernels::Kernels;
 use crate::late_reader::{LateReader, Words};
 use crate::layout::{argument, counter};
@@ -23,39 +27,6 @@ use crate::surface::ImageView;
 use crate::tiles::{DrawingOrder, EntryBuffers, Target, TargetRequest, max_capacity, tile_count};
 use crate::timing::Timer;
 use crate::{Gpu, GpuError};
-
-use self::pick::PickStage;
-
-/// How a scene is kept on the GPU.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RendererOptions {
-    /// Storage of SH coefficients.
-    pub harmonics: HarmonicsStorage,
-    /// Highest SH band to keep.
-    pub max_sh_degree: ShDegree,
-    /// Arithmetic of the deformation network.
-    pub precision: NetworkPrecision,
-    /// Tile entries to make room for at first; the buffers grow when a frame needs more.
-    pub initial_entries: Option<u32>,
-    /// Tile entries to make room for at most, when fewer than the device allows; frames that need
-    /// more are drawn in regions.
-    pub max_entries: Option<u32>,
-    /// Splats to keep when the scene has more: those that contribute most.
-    pub max_splats: Option<u32>,
-}
-
-impl Default for RendererOptions {
-    fn default() -> Self {
-        Self {
-            harmonics: HarmonicsStorage::default(),
-            max_sh_degree: ShDegree::Three,
-            precision: NetworkPrecision::default(),
-            initial_entries: None,
-            max_entries: None,
-            max_splats: None,
-        }
-    }
-}
 
 /// Renders a scene on the GPU.
 ///
@@ -186,6 +157,14 @@ impl Renderer {
         Self::with_options(gpu, self.scene.clone(), self.options)
     }
 
+    /// Evaluates the network in this precision from the next frame on. Has an effect on renderers
+    /// that were made for [`NetworkPrecision::Half`] and keep both kernels; creates nothing.
+    pub fn set_precision(&mut self, precision: NetworkPrecision) {
+        let Some(stage) = &mut self.deform else { return };
+        stage.set_precision(precision);
+        self.order.write_network_splats(&self.gpu, stage.splats_per_group());
+    }
+
     /// The scene that is rendered.
     #[must_use]
     pub fn scene(&self) -> &Arc<Scene> {
@@ -275,79 +254,12 @@ impl Renderer {
         Ok(grown)
     }
 
-    /// Counts that have arrived since the last call: those of the most demanding frame.
-    fn arrived_counts(&mut self) -> Result<Option<Counts>, GpuError> {
-        let mut most: Option<Counts> = None;
-        while let Some((_, words)) = self.counts.take()? {
-            let counts = Counts::from_words(&words);
-            if most.is_none_or(|m| counts.most_entries >= m.most_entries) {
-                most = Some(counts);
-            }
-        }
-        Ok(most)
-    }
-
     /// Index in the scene of a splat on the device; [`NO_SPLAT`] stays what it is.
     fn index_in_scene(&self, splat: u32) -> u32 {
         match &self.kept {
             Some(kept) => kept.get(splat as usize).copied().unwrap_or(NO_SPLAT),
             None => splat,
         }
-    }
-
-    /// Draws until the frame has fitted into the buffers.
-    fn draw_until_complete(
-        &mut self,
-        camera: &Camera,
-        settings: &FrameSettings,
-        layers: bool,
-        output: Output,
-    ) -> Result<(), GpuError> {
-        loop {
-            let encoder = self.encode(camera, settings, layers, output, true)?;
-            self.gpu.queue().submit([encoder.finish()]);
-            let counts = readback::counts(&self.gpu, &self.order.counts)?;
-            self.last_counts = counts;
-            let tiles = match output {
-                Output::Image => tile_count([camera.width, camera.height]),
-                Output::Tile(_) => 1,
-            };
-            if !self.make_room(counts, tiles)? {
-                return Ok(());
-            }
-        }
-    }
-
-    /// Makes room for the entries that a frame needed; `false` when there was enough.
-    fn make_room(&mut self, counts: Counts, tiles: u32) -> Result<bool, GpuError> {
-        let need = counts.most_entries;
-        let capacity = self.entries.pairs.capacity;
-        if need <= capacity {
-            return Ok(false);
-        }
-        let most = max_capacity(&self.gpu).min(self.options.max_entries.unwrap_or(u32::MAX));
-        if need > most {
-            // Regions of the image, one after the other.
-            let times = need.div_ceil(most).max(2);
-            if self.pieces >= tiles {
-                return Err(GpuError::OutOfMemory {
-                    what: "splats in one tile",
-                    need: u64::from(need) * 16,
-                    have: u64::from(most) * 16,
-                });
-            }
-            self.pieces = self.pieces.saturating_mul(times).min(tiles);
-        }
-        let wanted = (u64::from(need) * 5 / 4).min(u64::from(most)) as u32;
-        if wanted > capacity {
-            // The old buffers go first: both together might not fit.
-            self.main.unbind();
-            self.pick.target.unbind();
-            let kernels = &self.gpu.kernels().sort;
-            self.entries = EntryBuffers::new(&self.gpu, kernels, &self.order.counts, 1)?;
-            self.entries = EntryBuffers::new(&self.gpu, kernels, &self.order.counts, wanted)?;
-        }
-        Ok(true)
     }
 
     /// Records a frame.

@@ -53,7 +53,11 @@ pub(crate) struct DeformStage {
     block: layout::Deformation,
     biases: wgpu::Buffer,
     counts: wgpu::Buffer,
-    network: NetworkKernel,
+    plain: NetworkKernel,
+    /// The half-precision kernel that agrees with the plain one, if any was asked for.
+    half: Option<NetworkKernel>,
+    /// Which of the two is in use.
+    precision: NetworkPrecision,
     mask: wgpu::ComputePipeline,
     mask_group: Option<wgpu::BindGroup>,
     /// The moment that `poses` shows.
@@ -160,7 +164,9 @@ impl DeformStage {
         let mut stage = Self {
             count: buffers.count,
             has_motion: buffers.has_motion,
-            network: plain,
+            plain,
+            half: None,
+            precision: NetworkPrecision::Single,
             mask: kernels.mask.clone(),
             mask_group: None,
             packed,
@@ -171,11 +177,7 @@ impl DeformStage {
             counts: counts.clone(),
             shown: None,
         };
-        for kernel in faster {
-            if stage.use_if_it_agrees(gpu, kernel, &buffers.canonical_poses)? {
-                break;
-            }
-        }
+        // Before another kernel is in use: splats at rest are posed in single precision.
         if stage.has_motion {
             let initial = stage.initial_poses(gpu, bytes)?;
             stage.mask_group = Some(kernels.mask_interface.bind(
@@ -190,11 +192,16 @@ impl DeformStage {
                 ],
             ));
         }
+        for kernel in faster {
+            if stage.use_if_it_agrees(gpu, kernel, &buffers.canonical_poses)? {
+                break;
+            }
+        }
         Ok(stage)
     }
 
-    /// Replaces the network's kernel by another one, when both pose the first splats alike; `false`
-    /// when they do not.
+    /// Uses a half-precision kernel, when it poses the first splats as the plain one does; `false`
+    /// when it does not.
     fn use_if_it_agrees(
         &mut self,
         gpu: &Gpu,
@@ -207,16 +214,34 @@ impl DeformStage {
         let canonical: Vec<Pose> = readback::read(gpu, canonical, checked)?;
         let plain = self.evaluate_at(gpu, CHECK_TIME, checked)?;
         let name = candidate.name;
-        let before = std::mem::replace(&mut self.network, candidate);
-        self.invalidate();
+        self.half = Some(candidate);
+        self.set_precision(NetworkPrecision::Half);
         let ours = self.evaluate_at(gpu, CHECK_TIME, checked)?;
         self.invalidate();
         let agrees = half::agrees(&canonical, &plain, &ours);
         if !agrees {
             tracing::warn!("the {name} network differs from the plain one on this device");
-            self.network = before;
+            self.set_precision(NetworkPrecision::Single);
+            self.half = None;
         }
         Ok(agrees)
+    }
+
+    /// Uses the kernel of this precision from the next frame on; the plain one where there is no
+    /// other.
+    pub(crate) fn set_precision(&mut self, precision: NetworkPrecision) {
+        if self.precision != precision && self.half.is_some() {
+            self.precision = precision;
+            self.invalidate();
+        }
+    }
+
+    /// The kernel in use.
+    fn network(&self) -> &NetworkKernel {
+        match (self.precision, &self.half) {
+            (NetworkPrecision::Half, Some(half)) => half,
+            _ => &self.plain,
+        }
     }
 
     /// Poses of the first `count` splats at a time.
@@ -232,12 +257,12 @@ impl DeformStage {
 
     /// Name of the kernel that evaluates the network.
     pub(crate) fn kernel_name(&self) -> &'static str {
-        self.network.name
+        self.network().name
     }
 
     /// Splats per workgroup of the network.
     pub(crate) fn splats_per_group(&self) -> u32 {
-        self.network.splats
+        self.network().splats
     }
 
     /// Evaluates all splats at t = 0 and keeps a copy.
@@ -313,14 +338,14 @@ impl DeformStage {
     ) {
         let groups = match work {
             DeformWork::Nothing => return,
-            DeformWork::All => Groups::Direct(self.count.div_ceil(self.network.splats)),
+            DeformWork::All => Groups::Direct(self.count.div_ceil(self.network().splats)),
             DeformWork::Listed | DeformWork::Masked => listed,
         };
         if self.count == 0 {
             return;
         }
-        pass.set_pipeline(&self.network.pipeline);
-        pass.set_bind_group(0, &self.network.bind_group, &[]);
+        pass.set_pipeline(&self.network().pipeline);
+        pass.set_bind_group(0, &self.network().bind_group, &[]);
         dispatch(pass, groups);
     }
 }

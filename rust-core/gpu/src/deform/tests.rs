@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3};
 use trapeze_scene::{Camera, FrameSettings, Scene, psnr};
 
-use super::NetworkPrecision;
+use super::{NetworkPrecision, PackedWeights};
 use crate::kernel_tests::device;
 use crate::{DeviceProfile, Gpu, GpuOptions, Renderer, RendererOptions};
 
@@ -54,6 +54,38 @@ fn half_precision_shows_the_sample_scene_at_45_db_or_better() {
     assert!(covered > 1000, "only {covered} pixels show anything");
     let quality = psnr(&frame.color, &exact.color);
     assert!(quality.is_finite() && quality >= 45.0, "{quality} dB");
+}
+
+#[test]
+fn precision_may_change_from_frame_to_frame_without_a_new_object() {
+    let Some(gpu) = device() else { return };
+    let few: Vec<u32> = (0..500).collect();
+    let scene = Arc::new(sample_scene().gather(&few));
+    let camera = camera(&scene);
+    let settings = FrameSettings { time: 0.6, ..FrameSettings::default() };
+    let mut renderer = Renderer::with_options(&gpu, scene.clone(), half()).unwrap();
+    let single = Renderer::new(&gpu, scene).unwrap().render(&camera, &settings).unwrap().color;
+    let fast = renderer.render(&camera, &settings).unwrap().color;
+    let before = gpu.created();
+    for precision in [NetworkPrecision::Single, NetworkPrecision::Half] {
+        renderer.set_precision(precision);
+        renderer.draw(&camera, &settings).unwrap();
+    }
+    assert_eq!(gpu.created(), before);
+    renderer.set_precision(NetworkPrecision::Single);
+    assert_eq!(renderer.network_kernel(), Some("f32"));
+    assert_eq!(renderer.render(&camera, &settings).unwrap().color, single);
+    renderer.set_precision(NetworkPrecision::Half);
+    assert_eq!(renderer.render(&camera, &settings).unwrap().color, fast);
+}
+
+#[test]
+fn networks_wider_than_workgroup_memory_are_refused_by_name() {
+    let mut network = sample_scene().deformation.unwrap();
+    network.hidden.iter_mut().for_each(|layer| layer.outputs = 300);
+    let error = PackedWeights::new(&network).unwrap_err().to_string();
+    assert!(error.contains("width of the hidden layers") && error.contains("256"), "{error}");
+    assert!(error.contains("300"), "{error}");
 }
 
 #[test]
