@@ -308,7 +308,7 @@ mod tests {
 
     #[test]
     fn every_shader_is_valid() {
-        for shader in shaders::ALL.into_iter().chain(shaders::OPTIONAL) {
+        for shader in shaders::every_shader() {
             let module = naga::front::wgsl::parse_str(&shader.source()).unwrap_or_else(|e| {
                 panic!("{}: {}", shader.name, e.emit_to_string(&shader.source()))
             });

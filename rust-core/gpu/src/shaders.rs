@@ -1,6 +1,8 @@
 //! The WGSL sources, put together: WGSL has no include, so a stage's source is its common files
 //! followed by its own.
 
+pub mod training;
+
 /// A shader: its name, and the files that make it.
 #[derive(Clone, Copy, Debug)]
 pub struct Shader {
@@ -248,6 +250,12 @@ pub const ALL: [Shader; 18] = [
 
 /// Shaders that need features which not every device has.
 pub const OPTIONAL: [Shader; 2] = [DEFORM_HALF, DEFORM_MATRIX];
+
+/// All shaders: what is validated and translated to Metal.
+#[cfg(test)]
+pub(crate) fn every_shader() -> impl Iterator<Item = Shader> {
+    ALL.into_iter().chain(OPTIONAL).chain(training::ALL)
+}
 
 /// The common files behind the positional encoding, for its test.
 #[cfg(test)]

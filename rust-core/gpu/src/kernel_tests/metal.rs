@@ -6,7 +6,8 @@ use std::path::Path;
 use naga::back::msl;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
-use crate::shaders::{self, Shader};
+use crate::shaders::Shader;
+use crate::shaders::every_shader;
 
 /// Metal Shading Language 3.0 of all entry points, with the default values of overridable constants.
 fn translate(shader: Shader) -> String {
@@ -36,7 +37,7 @@ fn translate(shader: Shader) -> String {
 fn the_kept_metal_source_is_that_of_the_kernels() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shaders/metal");
     let export = std::env::var_os("TRAPEZE_EXPORT_MSL").is_some();
-    for shader in shaders::ALL.into_iter().chain(shaders::OPTIONAL) {
+    for shader in every_shader() {
         let path = folder.join(format!("{}.metal", shader.name));
         let text = translate(shader);
         if export {
