@@ -77,6 +77,33 @@ fn a_run_reports_as_json_lines_and_leaves_a_scene_that_eval_agrees_with() {
 }
 
 #[test]
+fn the_gpu_trains_and_evaluates_with_the_same_commands() {
+    if let Err(trapeze_gpu::GpuError::NoAdapter { .. }) =
+        trapeze_gpu::Gpu::open(&trapeze_gpu::GpuOptions::default())
+    {
+        eprintln!("SKIPPED: GPU tests need a Vulkan or Metal device (mesa-vulkan-drivers)");
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("scene");
+    let options = ["--steps", "60", "--fixed", "--sh-degree", "1", "--backend", "gpu", "--json"];
+    let lines = lines(&succeed(&training(&out, &options)));
+    let (last, reports) = lines.split_last().unwrap();
+    let loss = |report: &Value| report["loss"].as_f64().unwrap();
+    assert!(loss(&reports[reports.len() - 1]) < loss(&reports[0]), "{reports:?}");
+    assert_eq!((&last["done"], &last["splats"]), (&true.into(), &800.into()));
+    let psnr = |backend: &str| {
+        let eval = ["--downscale", "4", "--json", "--backend", backend];
+        let mut words = arguments!["eval", &out, photographs()].to_vec();
+        words.extend(eval.map(Into::into));
+        json(&words)["psnr"].as_f64().unwrap()
+    };
+    assert_eq!(psnr("gpu"), last["test_psnr"].as_f64().unwrap());
+    // Images agree to 2e-3 at worst, and errors of photographs are a hundred times that.
+    assert!((psnr("cpu") - psnr("gpu")).abs() < 0.01);
+}
+
+#[test]
 fn a_search_keeps_its_evidence_and_a_packed_scene_loads() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("scene");

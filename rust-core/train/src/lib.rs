@@ -27,6 +27,7 @@ mod cpu_backend;
 pub mod densify;
 pub mod evaluation;
 mod exponential;
+mod gpu_backend;
 pub mod initialise;
 pub mod loss;
 pub mod optimizer;
@@ -38,6 +39,7 @@ mod state;
 pub mod trainer;
 
 pub use cpu_backend::{CpuBackend, CpuBackendOptions, CpuStepTimes};
+pub use gpu_backend::{GpuBackend, GpuBackendOptions, GpuMemoryPlan, GpuStepTimes};
 pub use parameters::{ParameterGroup, zeros_like};
 pub use reference_backend::ReferenceBackend;
 pub use state::TrainingState;

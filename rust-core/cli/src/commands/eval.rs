@@ -4,11 +4,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
-use trapeze_cpu::Renderer;
 use trapeze_formats::dataset::Dataset;
 use trapeze_scene::{FrameSettings, Scene};
 use trapeze_train::evaluation::{Evaluation, evaluate};
 
+use super::render::{Backend, Painter};
 use crate::dataset_input::{DatasetArguments, parse_color};
 use crate::error::CliError;
 use crate::output::{print_json, print_line, progress_bar};
@@ -23,6 +23,9 @@ pub(crate) struct Arguments {
     /// Which views to compare.
     #[arg(long, value_enum, default_value_t)]
     views: Views,
+    /// What renders the views.
+    #[arg(long, value_enum, default_value_t)]
+    backend: Backend,
     /// Compare over this colour: black, white or r,g,b. By default photographs with transparency
     /// over white, the others over black.
     #[arg(long, value_parser = parse_color)]
@@ -51,7 +54,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), CliError> {
         Views::Train => dataset.training_views().collect(),
         Views::All => (0..dataset.views.len()).collect(),
     };
-    let evaluation = evaluate_scene(scene, &dataset, &views, arguments.background)?;
+    let (background, backend) = (arguments.background, arguments.backend);
+    let evaluation = evaluate_scene(scene, &dataset, &views, background, backend)?;
     let Some(evaluation) = evaluation else {
         return Err(CliError::argument("DATASET", "a view to compare with", "none of that kind"));
     };
@@ -68,13 +72,14 @@ pub(super) fn evaluate_scene(
     dataset: &Dataset,
     views: &[usize],
     background: Option<[f32; 3]>,
+    backend: Backend,
 ) -> Result<Option<Evaluation>, CliError> {
-    let mut renderer = Renderer::new(Arc::new(scene));
+    let mut painter = Painter::new(backend, Arc::new(scene))?;
     let progress = progress_bar(views.len() as u64, "comparing");
     let evaluation = evaluate(dataset, views, background, |index| {
         let view = &dataset.views[index];
         let settings = FrameSettings { time: view.time.unwrap_or(0.0), ..FrameSettings::default() };
-        let frame = renderer.render(&view.camera, &settings)?;
+        let frame = painter.paint(&view.camera, &settings)?;
         progress.inc(1);
         Ok::<_, CliError>(frame)
     });

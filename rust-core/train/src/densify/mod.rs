@@ -12,4 +12,6 @@ mod sampling;
 
 pub use correction::{MAX_COPIES, logit, relocation_correction};
 pub use noise::PositionNoise;
+pub(crate) use relocation::{dead_logit, lowest_logit};
 pub use relocation::{grow, grown_count, relocate_dead};
+pub(crate) use sampling::{OpacityUnits, weight_bits, weight_shift};

@@ -8,7 +8,7 @@
 use trapeze_scene::{Splats, sigmoid};
 
 use super::correction::{logit, relocation_correction};
-use super::sampling::OpacityDistribution;
+use super::sampling::{OpacityDistribution, OpacityUnits};
 use crate::TrainingState;
 use crate::parameters::{ParameterGroup, clear, copy_within, push_copy, push_zero};
 use crate::random::{Purpose, Stream};
@@ -20,9 +20,9 @@ use crate::random::{Purpose, Stream};
 /// Draw i of the stream of [`Purpose::Relocation`] decides where dead splat i goes. Returns how
 /// many moved; none do when none live.
 pub fn relocate_dead(state: &mut TrainingState, dead_opacity: f64, seed: u64) -> u32 {
-    let opacities = living_opacities(&state.splats, dead_opacity);
-    let dead: Vec<usize> = (0..opacities.len()).filter(|&i| opacities[i] == 0.0).collect();
-    let Some(distribution) = OpacityDistribution::new(opacities.into_iter()) else { return 0 };
+    let living = Living::of(&state.splats, dead_logit(dead_opacity));
+    let Some(distribution) = OpacityDistribution::new(living.units()) else { return 0 };
+    let dead: Vec<usize> = (0..state.splats.len()).filter(|&i| living.0[i].is_none()).collect();
     let stream = Stream::new(seed, Purpose::Relocation, state.step);
     let hosts: Vec<u32> = dead.iter().map(|&i| distribution.draw(&stream, i as u32)).collect();
     correct_hosts(state, &hosts, dead_opacity);
@@ -43,9 +43,9 @@ pub fn grow(state: &mut TrainingState, count: u32, dead_opacity: f64, seed: u64)
     if n == 0 || count as usize <= n {
         return;
     }
-    let opacities = living_opacities(&state.splats, 0.0);
-    let distribution = OpacityDistribution::new(opacities.into_iter())
-        .or_else(|| OpacityDistribution::new(std::iter::repeat_n(1.0, n)));
+    let living = Living::of(&state.splats, f32::MIN);
+    let distribution =
+        OpacityDistribution::new(living.units()).or_else(|| OpacityDistribution::even(n as u32));
     let Some(distribution) = distribution else { return };
     let stream = Stream::new(seed, Purpose::Growth, state.step);
     let hosts: Vec<u32> = (n as u32..count).map(|i| distribution.draw(&stream, i)).collect();
@@ -57,23 +57,42 @@ pub fn grow(state: &mut TrainingState, count: u32, dead_opacity: f64, seed: u64)
     }
 }
 
-/// The opacity of every splat that is above `threshold` and finite in all its parameters, else 0.
-fn living_opacities(splats: &Splats, threshold: f64) -> Vec<f32> {
-    let mut finite = vec![true; splats.len()];
-    for group in ParameterGroup::ALL {
-        let values = group.of(splats);
-        let width = values.len() / splats.len().max(1);
-        if width > 0 {
-            for (finite, values) in finite.iter_mut().zip(values.chunks_exact(width)) {
-                *finite &= values.iter().all(|v| v.is_finite());
+/// The highest logit that is dead. Whether a splat lives is decided on its logit: a comparison of
+/// stored bits, which every backend makes alike.
+pub(crate) fn dead_logit(dead_opacity: f64) -> f32 {
+    logit(dead_opacity.max(f64::MIN_POSITIVE)) as f32
+}
+
+/// The lowest logit that is alive.
+pub(crate) fn lowest_logit(dead_opacity: f64) -> f32 {
+    dead_logit(dead_opacity).next_up()
+}
+
+/// The opacity, in units, of every splat that is alive.
+struct Living(Vec<Option<u32>>);
+
+impl Living {
+    /// Those whose logit is above `threshold` and whose parameters are all finite.
+    fn of(splats: &Splats, threshold: f32) -> Self {
+        let mut finite = vec![true; splats.len()];
+        for group in ParameterGroup::ALL {
+            let values = group.of(splats);
+            let width = values.len() / splats.len().max(1);
+            if width > 0 {
+                for (finite, values) in finite.iter_mut().zip(values.chunks_exact(width)) {
+                    *finite &= values.iter().all(|v| v.is_finite());
+                }
             }
         }
+        let units = OpacityUnits::new();
+        let logits = splats.opacity_logits.iter().zip(finite);
+        let alive = |(&logit, finite)| (finite && logit > threshold).then(|| units.of(logit));
+        Self(logits.map(alive).collect())
     }
-    let opacity = |&logit: &f32| sigmoid(f64::from(logit));
-    let opacities = splats.opacity_logits.iter().map(opacity);
-    let living =
-        opacities.zip(finite).map(|(o, finite)| if finite && o > threshold { o } else { 0.0 });
-    living.map(|o| o as f32).collect()
+
+    fn units(&self) -> impl ExactSizeIterator<Item = u32> {
+        self.0.iter().map(|units| units.unwrap_or(0))
+    }
 }
 
 /// Gives each distinct host the opacity and scale of one of the copies that will stand there: one
@@ -85,9 +104,7 @@ fn correct_hosts(state: &mut TrainingState, hosts: &[u32], dead_opacity: f64) {
         let host = group[0] as usize;
         let opacity = sigmoid(f64::from(state.splats.opacity_logits[host]));
         let (new_opacity, scale) = relocation_correction(opacity, group.len() as u32 + 1);
-        // The lowest logit that is alive once it has been rounded to single precision.
-        let lowest = (logit(dead_opacity.max(f64::MIN_POSITIVE)) as f32).next_up();
-        let new_logit = (logit(new_opacity) as f32).max(lowest);
+        let new_logit = (logit(new_opacity) as f32).max(lowest_logit(dead_opacity));
         state.splats.opacity_logits[host] = new_logit;
         for log_scale in &mut state.splats.log_scales[host] {
             *log_scale = (f64::from(*log_scale) + scale.ln()) as f32;

@@ -1,17 +1,23 @@
-//! `trapeze bench train`: the same run on every instruction set and on the f64 reference.
+//! `trapeze bench train`: the same run on every instruction set or on the GPU, and on the f64
+//! reference.
 
 use std::time::{Duration, Instant};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use fearless_simd::Level;
 use serde::Serialize;
 use trapeze_formats::dataset::Dataset;
+use trapeze_gpu::DeviceReport;
 use trapeze_scene::FrameSettings;
 use trapeze_train::backend::TrainingBackend;
 use trapeze_train::config::TrainingConfig;
 use trapeze_train::evaluation::evaluate;
-use trapeze_train::{CpuBackend, CpuBackendOptions, ReferenceBackend, Trainer, TrainerOptions};
+use trapeze_train::{
+    CpuBackend, CpuBackendOptions, GpuBackend, GpuBackendOptions, GpuStepTimes, ReferenceBackend,
+    Trainer, TrainerOptions,
+};
 
+use super::super::render::open_gpu;
 use crate::dataset_input::DatasetArguments;
 use crate::error::CliError;
 use crate::measure::{Machine, Timing, level_name, simd_levels};
@@ -21,7 +27,10 @@ use crate::output::{print_json, print_line};
 pub(crate) struct Arguments {
     #[command(flatten)]
     dataset: DatasetArguments,
-    /// Steps of the run on each instruction set.
+    /// What trains.
+    #[arg(long, value_enum, default_value_t)]
+    backend: Backend,
+    /// Steps of the run on each instruction set, or on the GPU.
     #[arg(long, default_value_t = 500, value_parser = clap::value_parser!(u32).range(1..))]
     steps: u32,
     /// Steps after which all are compared; the f64 reference takes no more. 0 leaves it out.
@@ -41,6 +50,15 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum Backend {
+    /// Every instruction set of the processor.
+    #[default]
+    Cpu,
+    /// Metal or Vulkan.
+    Gpu,
+}
+
 #[derive(Debug, Serialize)]
 struct Report {
     what: &'static str,
@@ -49,6 +67,8 @@ struct Report {
     sh_degree: u32,
     reference_steps: u32,
     rows: Vec<Row>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    device: Option<DeviceReport>,
     machine: Machine,
 }
 
@@ -65,7 +85,69 @@ struct Row {
     psnr_at_reference_steps: Option<f64>,
     /// On the held-out views after all steps, dB.
     psnr: f64,
+    /// Median over some steps after the run, on the GPU's own clock.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    median_stage_ms: Option<StageMedians>,
 }
+
+/// Medians of the stages of a step on the GPU, ms.
+#[derive(Debug, Serialize)]
+struct StageMedians {
+    project: f64,
+    sort: f64,
+    bin: f64,
+    rasterize: f64,
+    loss: f64,
+    rasterize_backward: f64,
+    sum_slots: f64,
+    project_backward: f64,
+    update: f64,
+    total: f64,
+}
+
+impl StageMedians {
+    fn of(times: &[GpuStepTimes]) -> Option<Self> {
+        if times.is_empty() {
+            return None;
+        }
+        let median = |pick: fn(&GpuStepTimes) -> Duration| {
+            Timing::of(&times.iter().map(pick).collect::<Vec<_>>()).median_ms
+        };
+        Some(Self {
+            project: median(|t| t.passes.project),
+            sort: median(|t| t.passes.sort),
+            bin: median(|t| t.passes.bin),
+            rasterize: median(|t| t.passes.rasterize),
+            loss: median(|t| t.loss),
+            rasterize_backward: median(|t| t.passes.rasterize_backward),
+            sum_slots: median(|t| t.passes.sum_slots),
+            project_backward: median(|t| t.passes.project_backward),
+            update: median(|t| t.update),
+            total: median(GpuStepTimes::total),
+        })
+    }
+
+    fn text(&self) -> String {
+        let stages = [
+            ("project", self.project),
+            ("sort", self.sort),
+            ("bin", self.bin),
+            ("rasterize", self.rasterize),
+            ("loss", self.loss),
+            ("rasterize_backward", self.rasterize_backward),
+            ("sum_slots", self.sum_slots),
+            ("project_backward", self.project_backward),
+            ("update", self.update),
+            ("total", self.total),
+        ];
+        let each: Vec<String> =
+            stages.iter().map(|(name, ms)| format!("{name} {ms:.3} ms")).collect();
+        each.join(", ")
+    }
+}
+
+/// Steps that are taken apart after a run on the GPU.
+const TIMED_STEPS: u32 = 30;
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), CliError> {
     let dataset = arguments.dataset.load()?;
@@ -78,16 +160,23 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CliError> {
     if arguments.reference_steps > 0 {
         let backend = ReferenceBackend::default();
         let steps = arguments.reference_steps;
-        measure(measured(arguments, &dataset, backend, "f64 reference", steps)?);
+        measure(measured(arguments, &dataset, backend, "f64 reference", steps, |_| Ok(None))?);
     }
-    for level in simd_levels().into_iter().rev() {
-        measure(measured(
-            arguments,
-            &dataset,
-            on_level(level),
-            level_name(level),
-            arguments.steps,
-        )?);
+    let mut device = None;
+    match arguments.backend {
+        Backend::Cpu => {
+            for level in simd_levels().into_iter().rev() {
+                let (backend, name, steps) = (on_level(level), level_name(level), arguments.steps);
+                measure(measured(arguments, &dataset, backend, name, steps, |_| Ok(None))?);
+            }
+        }
+        Backend::Gpu => {
+            let gpu = open_gpu()?;
+            let options = GpuBackendOptions { memory_budget: u64::MAX, ..Default::default() };
+            let backend = GpuBackend::new(&gpu, options)?;
+            device = Some(DeviceReport::of(&gpu));
+            measure(measured(arguments, &dataset, backend, "gpu", arguments.steps, stages)?);
+        }
     }
     let report = Report {
         what: "train",
@@ -96,6 +185,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CliError> {
         sh_degree: arguments.sh_degree,
         reference_steps: arguments.reference_steps,
         rows,
+        device,
         machine: Machine::this(),
     };
     if arguments.json { print_json(&report) } else { print_text(&report) }
@@ -112,6 +202,7 @@ fn measured<B: TrainingBackend>(
     backend: B,
     variant: &'static str,
     steps: u32,
+    stages: impl FnOnce(&mut Trainer<B>) -> Result<Option<StageMedians>, CliError>,
 ) -> Result<(Row, u32), CliError> {
     // The schedule of the longest run, so that every variant takes the same first steps.
     let mut config = TrainingConfig::fixed(arguments.steps.max(steps));
@@ -134,6 +225,7 @@ fn measured<B: TrainingBackend>(
     }
     let psnr = held_out_psnr(&mut trainer, dataset)?;
     let seconds = times.iter().sum::<Duration>().as_secs_f64();
+    let splats = trainer.splat_count();
     let row = Row {
         variant,
         timing: Timing::of(&times),
@@ -141,8 +233,26 @@ fn measured<B: TrainingBackend>(
         steps,
         psnr_at_reference_steps: early.or((steps == arguments.reference_steps).then_some(psnr)),
         psnr,
+        median_stage_ms: stages(&mut trainer)?,
     };
-    Ok((row, trainer.splat_count()))
+    Ok((row, splats))
+}
+
+/// Takes further steps apart.
+fn stages(trainer: &mut Trainer<GpuBackend>) -> Result<Option<StageMedians>, CliError> {
+    let config = trainer.config().clone();
+    let (extent, views) = (trainer.progress().extent, trainer.view_count() as u32);
+    let mut times = Vec::new();
+    for i in 0..TIMED_STEPS {
+        let view = trainer.view(i % views).clone();
+        let backend = trainer.backend();
+        if backend.has_target(view.id) {
+            let plan = config.step_plan(config.steps, extent, 1.0);
+            let measured = backend.time_stages(&plan, &view);
+            times.extend(measured.map_err(trapeze_train::TrainError::from)?);
+        }
+    }
+    Ok(StageMedians::of(&times))
 }
 
 /// Mean PSNR of the held-out views, dB.
@@ -191,6 +301,11 @@ fn print_text(report: &Report) -> Result<(), CliError> {
             row.steps,
             row.psnr,
         ))?;
+    }
+    for row in &report.rows {
+        if let Some(stages) = &row.median_stage_ms {
+            print_line(&format!("\n{}: {}.", row.variant, stages.text()))?;
+        }
     }
     Ok(())
 }

@@ -15,9 +15,10 @@ use trapeze_formats::dataset::Dataset;
 use trapeze_formats::load_scene;
 use trapeze_train::backend::TrainingBackend;
 use trapeze_train::trainer::{Event, TrainingSummary};
-use trapeze_train::{CpuBackend, Trainer, TrainerOptions};
+use trapeze_train::{CpuBackend, GpuBackend, GpuBackendOptions, Trainer, TrainerOptions};
 
 use super::eval::evaluate_scene;
+use super::render::{self, open_gpu};
 use crate::dataset_input::DatasetArguments;
 use crate::error::CliError;
 use configuration::TrainingArguments;
@@ -62,6 +63,8 @@ enum Backend {
     /// The processor's vector instructions.
     #[default]
     Cpu,
+    /// Metal or Vulkan.
+    Gpu,
 }
 
 /// Steps between two looks at whether the user wants to stop.
@@ -70,6 +73,9 @@ const BATCH: u32 = 5;
 const LEAST_INTERVAL: u32 = 10;
 /// Reports of a run, about; and the most steps between two.
 const REPORTS: u32 = 100;
+/// The same on a GPU.
+const GPU_REPORTS: u32 = 10;
+const MOST_GPU_INTERVAL: u32 = 1_000;
 const MEGABYTE: u64 = 1 << 20;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), CliError> {
@@ -84,7 +90,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), CliError> {
     let options = TrainerOptions {
         checkpoints: Some(folder.checkpoints()),
         memory_limit: Some(limit),
-        report_interval: (config.steps / REPORTS).clamp(LEAST_INTERVAL, REPORTS),
+        report_interval: arguments.backend.report_interval(config.steps),
         ..TrainerOptions::default()
     };
     match arguments.backend {
@@ -93,7 +99,36 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), CliError> {
             let trainer = Trainer::resume(&dataset, config, CpuBackend::default(), options)?;
             train(arguments, &dataset, &folder, trainer)
         }
+        Backend::Gpu => {
+            let trainer = Trainer::resume(&dataset, config, gpu_backend(limit)?, options)?;
+            train(arguments, &dataset, &folder, trainer)
+        }
     }
+}
+
+impl Backend {
+    /// Steps between two reports.
+    fn report_interval(self, steps: u32) -> u32 {
+        match self {
+            Self::Cpu => (steps / REPORTS).clamp(LEAST_INTERVAL, REPORTS),
+            // A report waits, renders and compares: as much as a dozen steps.
+            Self::Gpu => (steps / GPU_REPORTS).clamp(LEAST_INTERVAL, MOST_GPU_INTERVAL),
+        }
+    }
+
+    /// What evaluates the result.
+    fn renderer(self) -> render::Backend {
+        match self {
+            Self::Cpu => render::Backend::Cpu,
+            Self::Gpu => render::Backend::Gpu,
+        }
+    }
+}
+
+/// Training on the device that GPU commands run on.
+fn gpu_backend(limit: u64) -> Result<GpuBackend, CliError> {
+    let gpu = open_gpu()?;
+    Ok(GpuBackend::new(&gpu, GpuBackendOptions::within(&gpu, limit))?)
 }
 
 fn train<B: TrainingBackend>(
@@ -136,7 +171,8 @@ fn train<B: TrainingBackend>(
     drop(trainer);
     // The file is evaluated, as anyone else would load it, not what was in memory.
     let views: Vec<usize> = dataset.test_views().collect();
-    summary.test = evaluate_scene(load_scene(&scene)?, dataset, &views, None)?;
+    let renderer = arguments.backend.renderer();
+    summary.test = evaluate_scene(load_scene(&scene)?, dataset, &views, None, renderer)?;
     folder.finish(&summary)?;
     describe(&summary, &scene);
     metrics.finish(&summary)

@@ -1,0 +1,429 @@
+//! Training on the GPU: parameters, gradients and moments stay there, and no step waits.
+//!
+//! A step is one submission: the renderer's forward pass, the loss and its gradient, a report, the
+//! renderer's backward pass, Adam and the noise. The host writes two uniform blocks, records and
+//! returns; in the steady state it creates nothing. Reports go into a ring on the GPU, are copied
+//! out eight steps at a time and mapped without waiting; [`reports`](TrainingBackend::reports) waits
+//! for one submission, and only when the GPU is further behind than the step that is asked for.
+//!
+//! Tile entries that do not fit halt the run on the GPU (see
+//! [`trapeze_gpu::DifferentiableRenderer`]): the step and all after it change nothing until the host,
+//! which hears of it a few steps later, has made room and given the orders since then again. Orders
+//! are pure functions of the state, so the result is that of a run with enough room.
+//!
+//! The twins of the kernels are the CPU's: tests compare each of them.
+
+mod densify_stage;
+mod device;
+mod kernels;
+mod layout;
+mod loss_stage;
+mod memory;
+mod orders;
+mod reports;
+mod splats;
+mod targets;
+#[cfg(test)]
+mod tests;
+mod timing;
+mod update_stage;
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use trapeze_gpu::{
+    Created, ForwardSettings, Gpu, GpuError, ImageGradientBuffers, ParameterBuffers,
+};
+use trapeze_scene::{Camera, Frame, FrameSettings};
+
+use crate::TrainingState;
+use crate::backend::{BackendError, StepReport, TrainingBackend, TrainingView};
+use crate::loss::TargetImage;
+use crate::schedule::{DensifyPlan, StepPlan};
+use device::{DeviceSide, Run};
+use loss_stage::record_loss;
+pub use memory::GpuMemoryPlan;
+use orders::{Order, OrderLog, StepOrder};
+use reports::RawReport;
+use splats::ResidentSplats;
+use targets::ResidentTargets;
+pub use timing::GpuStepTimes;
+
+/// What the GPU may use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GpuBackendOptions {
+    /// Bytes that photographs may take.
+    pub target_budget: u64,
+    /// Bytes that the run may take on the device, photographs included.
+    pub memory_budget: u64,
+    /// Tile entries to make room for at first; the buffers grow when a view needs more. `None` makes
+    /// a guess from the number of splats.
+    pub initial_entries: Option<u32>,
+}
+
+impl Default for GpuBackendOptions {
+    /// 512 MiB of photographs, 8 GiB in all.
+    fn default() -> Self {
+        Self { target_budget: 512 << 20, memory_budget: 8 << 30, initial_entries: None }
+    }
+}
+
+impl GpuBackendOptions {
+    /// At most `bytes` where the device shares the system's memory; a device with memory of its own
+    /// says itself when that is full.
+    #[must_use]
+    pub fn within(gpu: &Gpu, bytes: u64) -> Self {
+        let has_own = gpu.adapter_info().device_type == wgpu::DeviceType::DiscreteGpu;
+        Self { memory_budget: if has_own { u64::MAX } else { bytes }, ..Self::default() }
+    }
+}
+
+/// Trains on a GPU.
+pub struct GpuBackend {
+    options: GpuBackendOptions,
+    device: DeviceSide,
+    /// What [`load`](TrainingBackend::load) brought.
+    run: Option<Run>,
+    targets: ResidentTargets,
+    log: OrderLog,
+    /// Reports that have arrived and were not asked for yet.
+    ready: VecDeque<StepReport>,
+    /// Steps taken.
+    step: u32,
+    waits: u64,
+    halts: u64,
+}
+
+impl GpuBackend {
+    /// A backend without splats on an open device; [`load`](TrainingBackend::load) brings them. After
+    /// the device was lost, `load` opens another with the same options.
+    ///
+    /// # Errors
+    /// [`GpuError::OutOfMemory`] when the device has no room for anything.
+    pub fn new(gpu: &Gpu, options: GpuBackendOptions) -> Result<Self, GpuError> {
+        Ok(Self {
+            device: DeviceSide::new(gpu.clone())?,
+            run: None,
+            targets: ResidentTargets::new(options.target_budget),
+            log: OrderLog::default(),
+            ready: VecDeque::new(),
+            step: 0,
+            waits: 0,
+            halts: 0,
+            options,
+        })
+    }
+
+    /// The device that it trains on.
+    #[must_use]
+    pub fn gpu(&self) -> &Gpu {
+        &self.device.gpu
+    }
+
+    /// The splats as they are on the device: a renderer on the same [`Gpu`] can draw them without a
+    /// copy, between two steps. `None` before [`load`](TrainingBackend::load).
+    #[must_use]
+    pub fn resident_splats(&self) -> Option<&ParameterBuffers> {
+        self.run.as_ref().map(|run| &run.splats.parameters)
+    }
+
+    /// Times that reports had to be waited for.
+    #[must_use]
+    pub fn report_waits(&self) -> u64 {
+        self.waits
+    }
+
+    /// Times that steps were repeated because tile entries had not fitted.
+    #[must_use]
+    pub fn halts(&self) -> u64 {
+        self.halts
+    }
+
+    /// Objects that were created on the device, and waits for all of its work.
+    #[must_use]
+    pub fn created(&self) -> Created {
+        self.device.gpu.created()
+    }
+
+    /// What the run takes on the device.
+    #[must_use]
+    pub fn memory_plan(&self) -> Option<GpuMemoryPlan> {
+        let splats = &self.run.as_ref()?.splats.parameters;
+        Some(GpuMemoryPlan::new(splats.capacity, splats.sh_degree, self.options.target_budget))
+    }
+
+    /// Errors when nothing can be asked of the device.
+    fn check_device(&self) -> Result<(), BackendError> {
+        self.device.gpu.check().map_err(backend_error)?;
+        if self.run.is_none() {
+            return Err(BackendError::Render("no splats were loaded".into()));
+        }
+        Ok(())
+    }
+
+    /// Gives an order, and remembers it until it is known to have been carried out.
+    fn give(&mut self, order: Order) -> Result<(), BackendError> {
+        self.check_device()?;
+        let splats = self.splat_count();
+        let result = match &order {
+            Order::Step(step) => self.record_step(step),
+            Order::Densify(plan, step) => self.record_densify(plan, *step),
+        };
+        match result {
+            Ok(()) => {
+                self.log.push(splats, order);
+                Ok(())
+            }
+            Err(error) => {
+                self.run = None;
+                Err(match (error, order) {
+                    (GpuError::Scene(error), Order::Step(step)) => {
+                        BackendError::View { id: step.view.id, reason: error.to_string() }
+                    }
+                    (error, _) => backend_error(error),
+                })
+            }
+        }
+    }
+
+    fn record_step(&mut self, step: &StepOrder) -> Result<(), GpuError> {
+        let StepOrder { plan, view, target } = step;
+        let Some(run) = &mut self.run else { return Ok(()) };
+        let device = &mut self.device;
+        let mut encoder = device.gpu.device().create_command_encoder(&Default::default());
+        run.raise_degree(device, plan.sh_degree, &mut encoder)?;
+        let settings = ForwardSettings { max_sh_degree: plan.sh_degree, depth: false };
+        run.renderer.forward(&mut encoder, &run.splats.parameters, &view.camera, settings)?;
+        let replaced = device.loss.prepare(&device.gpu, target.size)?;
+        if run.bind_image(device, replaced) {
+            self.targets.unbind();
+        }
+        let bind = || device.bind_loss(run.renderer.image(), target);
+        let bind_group = match self.targets.get(view.id) {
+            Some(resident) => resident.loss.get_or_insert_with(bind).clone(),
+            // Dropped since the step was first asked for.
+            None => bind(),
+        };
+        let slot = device.reports.take_slot();
+        device.write_step(plan, run.splats.count(), target, slot);
+        {
+            let mut pass = timing::begin(&mut encoder, "loss", None);
+            record_loss(&device.kernels, &mut pass, &bind_group, target.size);
+            run.record_report(&device.kernels, &mut pass);
+        }
+        let by_image = ImageGradientBuffers { color: &device.loss.gradient, expected_depth: None };
+        let (parameters, gradients) = (&run.splats.parameters, &run.splats.gradients);
+        run.renderer.backward(&mut encoder, parameters, by_image, gradients)?;
+        {
+            let mut pass = timing::begin(&mut encoder, "update", None);
+            run.record_update(&device.kernels, &mut pass, plan);
+        }
+        device.reports.record(&mut encoder, false);
+        device.submit(encoder);
+        self.step = plan.step + 1;
+        Ok(())
+    }
+
+    fn record_densify(&mut self, plan: &DensifyPlan, step: u32) -> Result<(), GpuError> {
+        let Some(run) = &mut self.run else { return Ok(()) };
+        let splats = run.splats.count();
+        if splats == 0 {
+            return Ok(());
+        }
+        let degree = run.splats.degree();
+        let bytes = |count| ResidentSplats::bytes(count, degree);
+        let (need, have) = (bytes(plan.count), bytes(run.splats.parameters.capacity));
+        if need > have {
+            return Err(GpuError::OutOfMemory { what: "splats", need, have });
+        }
+        let device = &mut self.device;
+        let mut encoder = device.gpu.device().create_command_encoder(&Default::default());
+        let stage = run.densify_stage(&device.gpu, &mut device.kernels)?;
+        stage.record(&device.gpu, &device.kernels, &mut encoder, plan, (splats, step));
+        device.submit(encoder);
+        run.splats.set_count(plan.count.max(splats));
+        Ok(())
+    }
+
+    /// Takes the reports that have arrived.
+    fn collect(&mut self) -> Result<(), BackendError> {
+        self.device.gpu.poll().map_err(backend_error)?;
+        while let Some(reports) = self.device.reports.take().map_err(backend_error)? {
+            for report in reports {
+                if report.halted {
+                    self.repeat(&report)?;
+                    break;
+                }
+                self.make_ready(&report);
+            }
+        }
+        Ok(())
+    }
+
+    fn make_ready(&mut self, report: &RawReport) {
+        let Some(order) = self.log.pop_step() else { return };
+        let [width, height] = order.target.size.map(|size| size as usize);
+        self.ready.push_back(StepReport {
+            step: order.plan.step,
+            loss: report.loss(width * height, order.plan.ssim_weight),
+            not_finite: report.not_finite,
+            visible: report.visible,
+        });
+        if let Some(run) = &mut self.run {
+            run.grow_ahead(report.entries);
+        }
+    }
+
+    /// Makes room for the entries of the oldest step and gives its order and all later ones again.
+    fn repeat(&mut self, halted: &RawReport) -> Result<(), BackendError> {
+        self.halts += 1;
+        let DeviceSide { gpu, reports, .. } = &mut self.device;
+        gpu.wait().map_err(backend_error)?;
+        reports.discard().map_err(backend_error)?;
+        let Some(run) = &mut self.run else { return Ok(()) };
+        run.make_room(gpu, halted.entries).map_err(backend_error)?;
+        let orders = self.log.take_from_step();
+        if let Some((splats, _)) = orders.first() {
+            run.splats.set_count(*splats);
+        }
+        orders.into_iter().try_for_each(|(_, order)| self.give(order))
+    }
+
+    /// Waits for the reports of all steps up to `step`.
+    fn wait_for(&mut self, step: u32) -> Result<(), BackendError> {
+        self.collect()?;
+        while self.log.waits_for(step) {
+            if !self.device.reports.is_waited_for() {
+                self.flush();
+            }
+            self.waits += 1;
+            let DeviceSide { gpu, reports, .. } = &self.device;
+            reports.wait_for_oldest(gpu).map_err(backend_error)?;
+            self.collect()?;
+        }
+        Ok(())
+    }
+
+    /// Sends off the copy of reports that do not make a batch yet.
+    fn flush(&mut self) {
+        let device = &mut self.device;
+        if device.reports.has_open() {
+            let mut encoder = device.gpu.device().create_command_encoder(&Default::default());
+            device.reports.record(&mut encoder, true);
+            device.submit(encoder);
+        }
+    }
+
+    /// Waits until every order is known to have been carried out.
+    fn settle(&mut self) -> Result<(), BackendError> {
+        self.check_device()?;
+        self.wait_for(u32::MAX)
+    }
+
+    /// Opens the device again after it was lost.
+    fn reopen(&mut self) -> Result<(), BackendError> {
+        self.run = None;
+        self.targets.clear();
+        let open = || DeviceSide::new(self.device.gpu.reopened()?);
+        self.device = open().map_err(backend_error)?;
+        Ok(())
+    }
+}
+
+impl TrainingBackend for GpuBackend {
+    fn working_bytes(&self, splats: u32, pixels: u64) -> u64 {
+        memory::working_bytes(splats, pixels)
+    }
+
+    fn target_budget(&self) -> u64 {
+        self.options.target_budget
+    }
+
+    fn load(&mut self, state: &TrainingState, capacity: u32) -> Result<(), BackendError> {
+        self.log.clear();
+        self.ready.clear();
+        let DeviceSide { gpu, reports, .. } = &mut self.device;
+        let idle = gpu.check().and_then(|()| gpu.wait()).and_then(|()| reports.discard());
+        if idle.is_err() {
+            self.reopen()?;
+        }
+        let capacity = capacity.max(state.splats.len() as u32);
+        let degree = state.splats.sh_degree;
+        GpuMemoryPlan::new(capacity, degree, self.options.target_budget)
+            .check(capacity, self.options.memory_budget)?;
+        let entries = self.options.initial_entries;
+        let loaded = device::load(&mut self.device, self.run.take(), state, capacity, entries);
+        self.run = Some(loaded.map_err(backend_error)?);
+        self.targets.unbind();
+        self.step = state.step;
+        Ok(())
+    }
+
+    fn state(&mut self) -> Result<TrainingState, BackendError> {
+        self.settle()?;
+        let Some(run) = &self.run else { return Ok(TrainingState::default()) };
+        run.splats.read(&self.device.gpu, self.step).map_err(backend_error)
+    }
+
+    fn has_target(&self, view: u32) -> bool {
+        self.targets.contains(view)
+    }
+
+    fn admit_target(&mut self, view: u32, target: Arc<TargetImage>) -> Result<(), BackendError> {
+        self.targets.admit(&self.device.gpu, view, &target)
+    }
+
+    fn step(&mut self, plan: &StepPlan, view: &TrainingView) -> Result<(), BackendError> {
+        let missing = BackendError::MissingTarget { id: view.id };
+        let target = self.targets.get(view.id).ok_or(missing)?.target.clone();
+        let size = [view.camera.width, view.camera.height];
+        if size != target.size {
+            let [width, height] = target.size;
+            let reason = format!("expected {width} x {height} pixels, found {size:?}");
+            return Err(BackendError::View { id: view.id, reason });
+        }
+        if self.device.reports.is_full() {
+            self.waits += 1;
+            self.device.reports.wait_for_oldest(&self.device.gpu).map_err(backend_error)?;
+            self.collect()?;
+        }
+        let order = StepOrder { plan: plan.clone(), view: view.clone(), target };
+        self.give(Order::Step(Box::new(order)))
+    }
+
+    fn densify(&mut self, plan: &DensifyPlan) -> Result<(), BackendError> {
+        self.give(Order::Densify(*plan, self.step))
+    }
+
+    fn splat_count(&self) -> u32 {
+        self.run.as_ref().map_or(0, |run| run.splats.count())
+    }
+
+    fn reports(&mut self, step: u32) -> Result<Vec<StepReport>, BackendError> {
+        self.check_device()?;
+        self.wait_for(step)?;
+        let due = self.ready.partition_point(|report| report.step <= step);
+        Ok(self.ready.drain(..due).collect())
+    }
+
+    fn render(&mut self, camera: &Camera, settings: &FrameSettings) -> Result<Frame, BackendError> {
+        self.settle()?;
+        let Some(run) = &mut self.run else { return Ok(Frame::default()) };
+        let forward =
+            ForwardSettings { max_sh_degree: settings.max_sh_degree, depth: settings.depth };
+        let parameters = &run.splats.parameters;
+        let result = run.renderer.forward_and_wait(parameters, camera, forward);
+        result.map(|(frame, _)| frame).map_err(backend_error)
+    }
+}
+
+/// What a fault of the device means for a run.
+fn backend_error(error: GpuError) -> BackendError {
+    match error {
+        GpuError::DeviceLost(reason) | GpuError::Device(reason) => BackendError::DeviceLost(reason),
+        GpuError::OutOfMemory { what, need, have } => {
+            BackendError::OutOfMemory { what: what.into(), needed: need, available: have }
+        }
+        other => BackendError::Render(other.to_string()),
+    }
+}
