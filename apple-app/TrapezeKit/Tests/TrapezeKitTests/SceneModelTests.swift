@@ -48,6 +48,35 @@ import Testing
     #expect(window.scene.phase == .ready && window.scene.name == "b")
   }
 
+  @Test func anEditOfASceneThatWasClosedDoesNotReachTheNextOne() async throws {
+    let window = try Window()
+    await window.open("a.ply")
+    window.scene.selection.choose([3])
+    await window.engine.gate.close()
+    let edit = Task { await window.scene.deleteChosen() }
+    await window.yield()
+    window.scene.close()
+    await window.engine.gate.open()
+    await edit.value
+    await window.open("b.ply")
+    #expect(window.scene.summary?.splatCount == 200 && !window.scene.edits.hasChanges)
+  }
+
+  @Test func newsAfterACancellationAreNotTold() async throws {
+    let (stream, continuation) = ProgressStream<Int>.makeStream()
+    continuation.yield(.step(ProgressStep(.reading)))
+    continuation.yield(.finished(1))
+    continuation.finish()
+    let task = Task { @MainActor in
+      var steps = 0
+      withUnsafeCurrentTask { $0?.cancel() }
+      let value: Int? = try? await stream.result { _ in steps += 1 }
+      return (steps, value)
+    }
+    let (steps, value) = await task.value
+    #expect(steps == 0 && value == nil)
+  }
+
   @Test func aBrokenFileIsAnAlertThatSaysWhatToDo() async throws {
     let window = try Window()
     window.engine.fail(.opening, EngineError(.malformedFile, "a.ply: header: expected x"))

@@ -29,13 +29,14 @@ public typealias ProgressStream<Value: Sendable> = AsyncThrowingStream<Progress<
 extension AsyncThrowingStream where Failure == any Error {
   /// Waits for the result and tells each step on the way.
   ///
-  /// - Throws: what the stream throws; `CancellationError` when it ends without a result, which is
-  ///   how a stream reacts to the cancellation of the task that reads it.
+  /// - Throws: what the stream throws; `CancellationError` when the task that waits was cancelled,
+  ///   whatever the stream has still to tell, and when the stream ends without a result.
   public func result<Value>(
     isolation: isolated (any Actor)? = #isolation,
     onStep: (ProgressStep) -> Void = { _ in }
   ) async throws -> Value where Element == Progress<Value> {
     for try await news in self {
+      try Task.checkCancellation()
       switch news {
       case .step(let step): onStep(step)
       case .finished(let value): return value

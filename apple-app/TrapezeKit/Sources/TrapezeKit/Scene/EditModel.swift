@@ -55,14 +55,15 @@ public final class EditModel {
     after change: (inout EditHistory) -> Void, from base: any SceneEngine, edits: [SceneEdit]
   ) async {
     guard !isEditing else { return }
+    let original = original
     progress = ProgressStep(.preparing)
     defer { progress = nil }
     do {
       let scene: any SceneEngine =
         edits.isEmpty
         ? base : try await base.applying(edits).result { self.progress = $0 }
-      // Closed meanwhile: nothing to install into.
-      guard original != nil else { return }
+      // Closed meanwhile, and perhaps another one opened: this one belongs nowhere.
+      guard let original, self.original === original else { return }
       try await install(scene)
       current = scene
       change(&history)

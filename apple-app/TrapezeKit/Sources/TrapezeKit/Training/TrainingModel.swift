@@ -109,6 +109,7 @@ public final class TrainingModel {
 
   public func resume() {
     guard canResume, let trainer else { return }
+    phase = .running
     work = Task { await follow(trainer) }
   }
 
