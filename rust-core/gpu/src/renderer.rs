@@ -17,7 +17,7 @@ use crate::deform::{DeformStage, DeformWork, NetworkPrecision};
 use crate::kernels::Kernels;
 use crate::late_reader::{LateReader, Words};
 use crate::layout::{argument, counter};
-use crate::memory::{initial_entries, kept_splats, part_of};
+use crate::memory::{MemoryPlan, SceneSize, initial_entries, kept_splats, part_of};
 use crate::project::{ProjectStage, ProjectedBuffers, frame_uniform};
 use crate::readback::{self, Counts};
 use crate::scene_buffers::{SceneBuffers, heat_scale};
@@ -78,6 +78,7 @@ impl Renderer {
         options: RendererOptions,
     ) -> Result<Self, GpuError> {
         scene.validate()?;
+        check_plan(gpu, &scene, &options)?;
         let kept = kept_splats(&scene, &options);
         let reduced = kept.as_ref().map(|kept| part_of(&scene, kept));
         let shown: &Scene = reduced.as_ref().unwrap_or(&scene);
@@ -327,6 +328,13 @@ impl Renderer {
         }
         Ok(encoder)
     }
+}
+
+/// Refuses what the device's limits do not allow, before anything is uploaded.
+fn check_plan(gpu: &Gpu, scene: &Scene, options: &RendererOptions) -> Result<(), GpuError> {
+    let most = max_capacity(gpu).min(options.max_entries.unwrap_or(u32::MAX));
+    let options = RendererOptions { max_entries: Some(most), ..*options };
+    MemoryPlan::new(&SceneSize::of(scene)?, &options, [0, 0], false).check(gpu)
 }
 
 /// Records the work of the deformation stage.

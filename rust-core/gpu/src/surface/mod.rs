@@ -158,7 +158,8 @@ impl WindowSurface {
         self.options.background = background;
     }
 
-    /// Shows the last image that `renderer` has drawn; black before the first.
+    /// Shows the last image that `renderer`, which is on the surface's device, has drawn; the
+    /// background alone before the first.
     ///
     /// # Errors
     /// [`GpuError::Surface`] when the surface is lost and cannot be made again,
@@ -166,6 +167,12 @@ impl WindowSurface {
     /// larger than one binding of the device.
     pub fn present(&mut self, renderer: &Renderer) -> Result<Presented, GpuError> {
         self.gpu.check()?;
+        if renderer.gpu().device() != self.gpu.device() {
+            return Err(GpuError::Surface {
+                expected: "a renderer on the surface's device",
+                found: "one on another device".into(),
+            });
+        }
         let Some(target) = self.acquire()? else { return Ok(Presented::Skipped) };
         let view = target.texture.create_view(&wgpu::TextureViewDescriptor::default());
         let mut encoder = self.gpu.device().create_command_encoder(&Default::default());
