@@ -1,6 +1,23 @@
-//! Text search over the clusters of a scene.
+//! Text search over the clusters of a scene, without a network connection.
 //!
-//! A text becomes tokens ([`tokenizer`]), exactly those that the models were trained with: a wrong
-//! token is not an error that anything reports, it is a search that finds the wrong thing.
+//! A [`Searcher`] looks at every cluster once: it renders [`crops`] of it from where it is seen well,
+//! has a model ([`models`]) turn them into features, and keeps their mean ([`features`]). A phrase
+//! becomes [`tokenizer`] tokens and a feature of its own, and the nearest clusters answer it
+//! ([`ranking`]). Scenes that come without clusters get them from [`cluster`].
+//!
+//! The crate renders nothing and depends on no renderer: whoever uses it supplies a
+//! [`CropRenderer`](crops::CropRenderer).
 
+pub mod cluster;
+pub mod crops;
+mod error;
+pub mod features;
+pub mod models;
+pub mod ranking;
+mod searcher;
+#[cfg(test)]
+mod test_scene;
 pub mod tokenizer;
+
+pub use error::SearchError;
+pub use searcher::{Encoded, Searcher};

@@ -38,17 +38,29 @@ impl Tokenizer {
     /// Any text is accepted, of any length; an empty one gives start and end.
     #[must_use]
     pub fn encode(&self, text: &str) -> [u32; CONTEXT_LENGTH] {
-        let mut words = Vec::with_capacity(CONTEXT_LENGTH);
-        self.merges.encode(&clean(text), &mut words);
-        words.truncate(CONTEXT_LENGTH - 2);
-        let framed = std::iter::once(self.merges.start_of_text())
-            .chain(words)
-            .chain(std::iter::once(self.merges.end_of_text()));
         let mut tokens = [0; CONTEXT_LENGTH];
-        for (to, token) in tokens.iter_mut().zip(framed) {
-            *to = u32::from(token.to_u16());
-        }
+        let words = self.words(text);
+        let framed = self.framed(&words, CONTEXT_LENGTH);
+        tokens.iter_mut().zip(framed).for_each(|(to, token)| *to = token);
         tokens
+    }
+
+    /// The tokens of a text's words, however many.
+    #[must_use]
+    pub fn words(&self, text: &str) -> Vec<u32> {
+        let mut words = Vec::new();
+        self.merges.encode(&clean(text), &mut words);
+        words.into_iter().map(|token| u32::from(token.to_u16())).collect()
+    }
+
+    /// Start, as many words as fit, end, zeros: `length` tokens.
+    pub fn framed(&self, words: &[u32], length: usize) -> impl Iterator<Item = u32> {
+        let kept = &words[..words.len().min(length.saturating_sub(2))];
+        std::iter::once(self.merges.start_of_text().to_u16().into())
+            .chain(kept.iter().copied())
+            .chain(std::iter::once(self.merges.end_of_text().to_u16().into()))
+            .chain(std::iter::repeat(0))
+            .take(length)
     }
 }
 
