@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 use trapeze_formats::{ReadError, WriteError};
+use trapeze_query::SearchError;
+use trapeze_query::cluster::ClusterError;
 use trapeze_scene::SceneError;
 use trapeze_scene::edit::EditError;
 use trapeze_train::TrainError;
@@ -23,6 +25,10 @@ pub(crate) enum CliError {
     Edit(#[from] EditError),
     #[error(transparent)]
     Train(#[from] TrainError),
+    #[error(transparent)]
+    Search(#[from] SearchError),
+    #[error(transparent)]
+    Cluster(#[from] ClusterError),
     #[error("{argument}: expected {expected}, found {found}")]
     Argument { argument: &'static str, expected: String, found: String },
     #[error("{}: {source}", path.display())]

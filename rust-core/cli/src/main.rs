@@ -10,6 +10,7 @@ mod measure;
 mod output;
 mod report;
 mod scene_input;
+mod search;
 
 use std::io::IsTerminal;
 use std::process::ExitCode;

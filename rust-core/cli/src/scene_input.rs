@@ -44,7 +44,7 @@ pub(crate) enum Up {
 }
 
 impl Up {
-    fn direction(self) -> DVec3 {
+    pub(crate) fn direction(self) -> DVec3 {
         match self {
             Self::X => DVec3::X,
             Self::Y => DVec3::Y,

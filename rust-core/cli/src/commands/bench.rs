@@ -1,5 +1,6 @@
 //! `trapeze bench`.
 
+mod search;
 mod train;
 
 use std::path::PathBuf;
@@ -30,6 +31,8 @@ pub(crate) enum Bench {
     Load(LoadArguments),
     /// Training steps on every instruction set and on the f64 reference, with what they reach.
     Train(train::Arguments),
+    /// Looking at every cluster, and answering a text.
+    Search(search::Arguments),
 }
 
 #[derive(Debug, Args)]
@@ -154,6 +157,7 @@ impl Bench {
             Self::Deform(arguments) => (deform(arguments)?, arguments.json),
             Self::Load(arguments) => (load(arguments)?, arguments.json),
             Self::Train(arguments) => return train::run(arguments),
+            Self::Search(arguments) => return search::run(arguments),
         };
         if json { print_json(&report) } else { print_text(&report) }
     }

@@ -2,13 +2,17 @@
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::{Args, Parser};
 use trapeze_formats::{ParseError, ReadError, load_scene, write_atomically};
+use trapeze_query::crops::CropOptions;
+use trapeze_query::ranking::QueryOptions;
 use trapeze_train::trainer::TrainingSummary;
 
 use super::Command;
 use crate::error::CliError;
+use crate::search::{SearchArguments, search};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -24,6 +28,9 @@ pub(crate) struct Arguments {
     /// The photographs to train on.
     #[arg(long, default_value = "assets/sample-dataset/transforms_static.json")]
     photographs: PathBuf,
+    /// The search model's folder.
+    #[arg(long, default_value = "assets/search-model")]
+    models: PathBuf,
     /// Steps of the training run.
     #[arg(long, default_value_t = 600)]
     steps: u32,
@@ -101,9 +108,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), CliError> {
     command(&[
         "report", &scene, "--out", &folder, "--size", "640x480", "--fov", "34", "--zoom", "1.6",
     ])?;
+    eprintln!("searching");
+    let found = search_section(arguments)?;
     eprintln!("training on {}", arguments.photographs.display());
     train(arguments)?;
-    let page = page(arguments)?;
+    let page = page(arguments, &found)?;
     let path = arguments.out.join("index.html");
     write_atomically(&path, |file| std::io::Write::write_all(file, page.as_bytes()))?;
     eprintln!("open {}", path.display());
@@ -156,6 +165,63 @@ fn training_section(arguments: &Arguments) -> Result<String, CliError> {
     ))
 }
 
+/// What the demo looks for in the sample scene.
+const PHRASES: [&str; 4] = ["red ball", "green ball", "blue and yellow box", "checkered floor"];
+
+/// Searches the scene; without a model or a runtime the page says what is missing.
+fn search_section(arguments: &Arguments) -> Result<String, CliError> {
+    let phrases = PHRASES.map(String::from);
+    let sheet = arguments.out.join("search.png");
+    let features = arguments.out.join("features.bin");
+    let report = search(
+        Arc::new(load_scene(&arguments.scene)?),
+        &SearchArguments {
+            path: &arguments.scene,
+            phrases: &phrases,
+            models: &arguments.models,
+            features: Some(&features),
+            crops: CropOptions::default(),
+            query: QueryOptions { top_k: 3, threshold: Some(0.0) },
+            sheet: Some(&sheet),
+        },
+    );
+    let report = match report {
+        Ok(report) => report,
+        Err(error @ CliError::Search(_)) => {
+            eprintln!("no search: {error}");
+            return Ok(format!(
+                "<h2>Search</h2>\n<p>Not run: {}</p>\n",
+                escape(&error.to_string())
+            ));
+        }
+        Err(error) => return Err(error),
+    };
+    let mut html = format!(
+        "<h2>Search</h2>\n<p>{}: {} clusters looked at in {:.1} s ({} crops); {} texts answered in {:.0} ms.</p>\n\
+         <figure><img src=\"search.png\" alt=\"What was found\"><figcaption>A row per text, the three best \
+         clusters, the score as a bar</figcaption></figure>\n<table>\n\
+         <tr><th>text</th><th>best</th><th>second</th><th>third</th></tr>\n",
+        escape(&report.model),
+        report.encoded_clusters,
+        report.encode_ms / 1e3,
+        report.crops,
+        phrases.len(),
+        report.query_ms,
+    );
+    for phrase in &phrases {
+        let found = report.results.iter().filter(|found| found.text == *phrase);
+        let cells: String = found
+            .map(|found| {
+                let name = found.name.clone().unwrap_or_else(|| found.cluster.to_string());
+                format!("<td>{} {:.2}</td>", escape(&name), found.score)
+            })
+            .collect();
+        // Writing to a String cannot fail.
+        let _ = writeln!(html, "<tr><td>{}</td>{cells}</tr>", escape(phrase));
+    }
+    Ok(html + "</table>\n")
+}
+
 /// Runs one of the program's own commands.
 fn command(words: &[&str]) -> Result<(), CliError> {
     #[derive(Parser)]
@@ -168,7 +234,7 @@ fn command(words: &[&str]) -> Result<(), CliError> {
     line.command.run()
 }
 
-fn page(arguments: &Arguments) -> Result<String, CliError> {
+fn page(arguments: &Arguments, found: &str) -> Result<String, CliError> {
     let scene = load_scene(&arguments.scene)?;
     let table = read(&arguments.out.join("report.md"))?;
     let mut html = String::from(HEAD);
@@ -191,6 +257,7 @@ fn page(arguments: &Arguments) -> Result<String, CliError> {
         );
     }
     html += "</div>\n";
+    html += found;
     html += &training_section(arguments)?;
     html += "<h2>Speed against error</h2>\n";
     html += &table_to_html(&table);

@@ -2,12 +2,14 @@
 
 mod bench;
 mod bench_gpu;
+mod cluster;
 mod convert;
 mod demo;
 mod eval;
 mod gpu_check;
 mod info;
 mod motion;
+mod query;
 mod render;
 mod report;
 mod train;
@@ -35,6 +37,10 @@ pub(crate) enum Command {
     Train(train::Arguments),
     /// Compare a scene with photographs: PSNR and SSIM.
     Eval(eval::Arguments),
+    /// Group splats into clusters, for scenes that come without.
+    Cluster(cluster::Arguments),
+    /// Find the clusters that a text means.
+    Query(query::Arguments),
     /// Run the main job on a scene and write a page that shows it.
     Demo(demo::Arguments),
 }
@@ -50,6 +56,8 @@ impl Command {
             Self::Bench(bench) => bench.run(),
             Self::Train(arguments) => train::run(arguments),
             Self::Eval(arguments) => eval::run(arguments),
+            Self::Cluster(arguments) => cluster::run(arguments),
+            Self::Query(arguments) => query::run(arguments),
             Self::Demo(arguments) => demo::run(arguments),
         }
     }

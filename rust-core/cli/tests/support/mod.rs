@@ -34,17 +34,18 @@ pub(crate) fn load(path: &Path) -> Scene {
     load_scene(path).unwrap()
 }
 
-fn run(arguments: &[impl AsRef<OsStr>]) -> Output {
+fn run(environment: &[(&str, &OsStr)], arguments: &[impl AsRef<OsStr>]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_trapeze"))
         .args(arguments)
         .env_remove("RUST_LOG")
+        .envs(environment.iter().copied())
         .output()
         .unwrap()
 }
 
 /// Runs the program and expects success; returns what it printed.
 pub(crate) fn succeed(arguments: &[impl AsRef<OsStr>]) -> String {
-    let output = run(arguments);
+    let output = run(&[], arguments);
     let errors = String::from_utf8(output.stderr).unwrap();
     assert!(output.status.success(), "{errors}");
     assert!(!errors.contains('\u{1b}'), "colours in a pipe: {errors:?}");
@@ -60,7 +61,15 @@ pub(crate) fn json(arguments: &[impl AsRef<OsStr>]) -> Value {
 /// Runs the program and expects it to refuse: another exit code than 0, nothing on standard output
 /// and exactly one line on standard error. Returns what follows `error: `.
 pub(crate) fn refusal(arguments: &[impl AsRef<OsStr>]) -> String {
-    let output = run(arguments);
+    refusal_in(&[], arguments)
+}
+
+/// The same, with environment variables set.
+pub(crate) fn refusal_in(
+    environment: &[(&str, &OsStr)],
+    arguments: &[impl AsRef<OsStr>],
+) -> String {
+    let output = run(environment, arguments);
     let errors = String::from_utf8(output.stderr).unwrap();
     // A crash by signal has no code, a panic has 101.
     assert_eq!(output.status.code(), Some(1), "{errors}");

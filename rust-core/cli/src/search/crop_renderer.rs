@@ -1,0 +1,44 @@
+//! The CPU renderer as the source of crops.
+
+use std::error::Error;
+use std::sync::Arc;
+
+use trapeze_cpu::Renderer;
+use trapeze_cpu::deform::DeformationStage;
+use trapeze_query::crops::CropRenderer;
+use trapeze_scene::{Camera, Frame, FrameSettings, Scene};
+
+/// Renders the scene that is searched.
+pub(crate) struct CpuCropRenderer {
+    scene: Arc<Scene>,
+    renderer: Renderer,
+    /// Made when positions are first asked for; the renderer keeps its own to itself.
+    stage: Option<DeformationStage>,
+}
+
+impl CpuCropRenderer {
+    pub(crate) fn new(scene: Arc<Scene>) -> Self {
+        Self { renderer: Renderer::new(Arc::clone(&scene)), scene, stage: None }
+    }
+}
+
+impl CropRenderer for CpuCropRenderer {
+    fn positions(&mut self, time: f32) -> Vec<[f32; 3]> {
+        let stage = self.stage.get_or_insert_with(|| DeformationStage::new(&self.scene));
+        stage.evaluate(time, None).positions.clone()
+    }
+
+    fn render(
+        &mut self,
+        camera: &Camera,
+        settings: &FrameSettings,
+    ) -> Result<Frame, Box<dyn Error + Send + Sync>> {
+        Ok(self.renderer.render(camera, settings)?)
+    }
+}
+
+/// Centres of all splats at each of the times.
+pub(crate) fn positions_at(scene: &Scene, times: &[f32]) -> Vec<Vec<[f32; 3]>> {
+    let mut stage = DeformationStage::new(scene);
+    times.iter().map(|&time| stage.evaluate(time, None).positions.clone()).collect()
+}
