@@ -24,11 +24,11 @@ use fearless_simd_macros::simd;
 use rayon::prelude::*;
 use trapeze_scene::{Camera, ColorSource, Frame, FrameSettings, Scene, SceneError, Splats};
 
-use crate::bin::{BandLists, bin_bands};
+use crate::bin::BandLists;
 use crate::deform::{DeformationOptions, DeformationStage, Deformed};
 use crate::deform_backward::{PoseRule, unit_backward};
 use crate::gradient::{GradientChunk, ImageGradient, PoseGradients, gradient_chunks, reset_like};
-use crate::project::{ProjectedSplat, ProjectionStage, project};
+use crate::project::{ProjectedSplat, ProjectedSplats, ProjectionStage, project};
 use crate::project_backward::{BackwardView, SplatInput, project_backward};
 use crate::rasterize::{Outputs, Target, rasterize};
 use crate::rasterize_backward::{BackwardInput, BackwardMemory, SplatSums, rasterize_backward};
@@ -45,7 +45,7 @@ pub struct DifferentiableRenderer {
     options: RendererOptions,
     poses: Deformed,
     projection: ProjectionStage,
-    projected: Vec<ProjectedSplat>,
+    projected: ProjectedSplats,
     sort: SortStage,
     sorted: Vec<ProjectedSplat>,
     bands: BandLists,
@@ -85,7 +85,7 @@ impl DifferentiableRenderer {
             options,
             poses: Deformed::default(),
             projection: ProjectionStage::default(),
-            projected: Vec::new(),
+            projected: ProjectedSplats::default(),
             sort: SortStage::default(),
             sorted: Vec::new(),
             bands: BandLists::default(),
@@ -139,7 +139,7 @@ impl DifferentiableRenderer {
         self.sort.sort(&self.projected, &mut self.sorted);
         times.sort = clock.lap();
         let size = (camera.width, camera.height);
-        self.bands = bin_bands(self.options.level, &self.sorted, size, self.options.tile);
+        self.bands.fill(self.options.level, &self.sorted, size, self.options.tile);
         times.bin = clock.lap();
         let target = Target {
             width: camera.width,

@@ -6,9 +6,9 @@ use std::time::{Duration, Instant};
 use fearless_simd::Level;
 use trapeze_scene::{Camera, Frame, FrameSettings, NO_SPLAT, Scene, SceneError};
 
-use crate::bin::{TileSize, bin_bands};
+use crate::bin::{BandLists, TileSize};
 use crate::deform::{DeformationOptions, DeformationStage};
-use crate::project::{ProjectedSplat, ProjectionStage, project};
+use crate::project::{ProjectedSplat, ProjectedSplats, ProjectionStage, project};
 use crate::rasterize::{Outputs, Target, rasterize};
 use crate::sort::SortStage;
 
@@ -61,8 +61,9 @@ pub struct Renderer {
     deform: DeformationStage,
     project: ProjectionStage,
     sort: SortStage,
-    projected: Vec<ProjectedSplat>,
+    projected: ProjectedSplats,
     sorted: Vec<ProjectedSplat>,
+    bands: BandLists,
     times: StageTimes,
 }
 
@@ -83,8 +84,9 @@ impl Renderer {
             ),
             project: ProjectionStage::new(&scene),
             sort: SortStage::default(),
-            projected: Vec::new(),
+            projected: ProjectedSplats::default(),
             sorted: Vec::new(),
+            bands: BandLists::default(),
             times: StageTimes::default(),
             scene,
             options,
@@ -137,15 +139,11 @@ impl Renderer {
         self.order_splats(camera, settings);
         let start = Instant::now();
         let target = self.target(camera, settings);
-        let bands = bin_bands(
-            self.options.level,
-            &self.sorted,
-            (camera.width, camera.height),
-            self.options.tile,
-        );
+        let size = (camera.width, camera.height);
+        self.bands.fill(self.options.level, &self.sorted, size, self.options.tile);
         self.times.bin = start.elapsed();
         let start = Instant::now();
-        rasterize(&self.sorted, &bands, &target, frame);
+        rasterize(&self.sorted, &self.bands, &target, frame);
         self.times.rasterize = start.elapsed();
         Ok(())
     }
@@ -176,7 +174,8 @@ impl Renderer {
             .collect();
         let outputs = Outputs { depth: true, top_contributor: true };
         let target = Target { width: 1, height: 1, outputs, ..self.target(camera, settings) };
-        let bands = bin_bands(self.options.level, &moved, (1, 1), self.options.tile);
+        let mut bands = BandLists::default();
+        bands.fill(self.options.level, &moved, (1, 1), self.options.tile);
         let mut frame = Frame::default();
         rasterize(&moved, &bands, &target, &mut frame);
         let splat = frame.top_contributor[0];

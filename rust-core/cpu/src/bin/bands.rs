@@ -5,7 +5,7 @@ use fearless_simd_macros::simd;
 use rayon::prelude::*;
 
 use super::TileSize;
-use crate::project::ProjectedSplat;
+use crate::project::{Outline, ProjectedSplat};
 
 /// A splat in a band.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,22 +40,23 @@ impl BandLists {
     }
 }
 
-/// Sorts `splats`, which are in drawing order, into the bands of an image of `size` (width, height).
-#[must_use]
-pub fn bin_bands(
-    level: Level,
-    splats: &[ProjectedSplat],
-    size: (u32, u32),
-    tile: TileSize,
-) -> BandLists {
-    let chunks = splats
-        .par_chunks(BandLists::CHUNK)
-        .enumerate()
-        .map(|(chunk, splats)| {
-            dispatch!(level, simd => bin_chunk(simd, splats, (chunk * BandLists::CHUNK) as u32, size, tile))
-        })
-        .collect();
-    BandLists { chunks }
+impl BandLists {
+    /// Sorts `splats`, which are in drawing order, into the bands of an image of `size` (width,
+    /// height). Memory is kept from frame to frame.
+    pub fn fill(
+        &mut self,
+        level: Level,
+        splats: &[ProjectedSplat],
+        size: (u32, u32),
+        tile: TileSize,
+    ) {
+        self.chunks.resize_with(splats.len().div_ceil(Self::CHUNK), Vec::new);
+        let tasks = self.chunks.par_iter_mut().zip(splats.par_chunks(Self::CHUNK)).enumerate();
+        tasks.for_each(|(chunk, (lists, splats))| {
+            let first_rank = (chunk * Self::CHUNK) as u32;
+            dispatch!(level, simd => bin_chunk(simd, splats, first_rank, size, tile, lists));
+        });
+    }
 }
 
 /// Bins consecutive splats, the first of which has rank `first_rank`. Scalar code, compiled for
@@ -67,19 +68,21 @@ fn bin_chunk<S: Simd>(
     first_rank: u32,
     (width, height): (u32, u32),
     tile: TileSize,
-) -> Vec<Vec<BandEntry>> {
+    lists: &mut Vec<Vec<BandEntry>>,
+) {
     let bands = height.div_ceil(tile.height()) as usize;
-    let mut lists = vec![Vec::new(); bands];
+    lists.iter_mut().for_each(Vec::clear);
+    lists.resize_with(bands, Vec::new);
     for (rank, splat) in (first_rank..).zip(splats) {
+        let outline = splat.outline();
         for band in bands_of(splat, bands, tile) {
             let y_min = (band as u32 * tile.height()) as f32 + 0.5;
             let y_max = y_min + (tile.height() - 1) as f32;
-            if let Some((first_tile, last_tile)) = tiles_of(splat, (y_min, y_max), width, tile) {
+            if let Some((first_tile, last_tile)) = tiles_of(&outline, (y_min, y_max), width, tile) {
                 lists[band].push(BandEntry { rank, first_tile, last_tile });
             }
         }
     }
-    lists
 }
 
 /// Slack in pixels on all sides of an ellipse's exact interval: rounding in the interval, which is
@@ -90,12 +93,12 @@ const SLACK: f32 = 0.01;
 /// meets the strip between the band's first and last pixel centres.
 #[inline(always)]
 fn tiles_of(
-    splat: &ProjectedSplat,
+    outline: &Outline,
     (y_min, y_max): (f32, f32),
     width: u32,
     tile: TileSize,
 ) -> Option<(u16, u16)> {
-    let (left, right) = splat.x_interval(y_min - SLACK, y_max + SLACK)?;
+    let (left, right) = outline.x_interval(y_min - SLACK, y_max + SLACK)?;
     // Relative slack for splats that reach far; absolute for the rest.
     let slack = SLACK + 1e-5 * (right - left);
     let last_tile = (width - 1) / tile.width();
@@ -135,7 +138,8 @@ mod tests {
             ..Default::default()
         };
         let splats = [splat(8.0, 3.0), splat(16.0, 1.0), splat(40.0, 1e9), splat(-50.0, 10.0)];
-        let lists = bin_bands(Level::new(), &splats, (64, 64), tile);
+        let mut lists = BandLists::default();
+        lists.fill(Level::new(), &splats, (64, 64), tile);
         let band = |b| lists.band(b).map(|entry| entry.rank).collect::<Vec<_>>();
         assert_eq!(band(0), [0, 1, 2]);
         assert_eq!(band(1), [1, 2]);

@@ -42,24 +42,27 @@ pub fn limit_channel(x: f32) -> f32 {
     x.max(0.0).min(MAX_CHANNEL)
 }
 
+/// The SH constants in single precision.
+const C0: f32 = SH_C0 as f32;
+pub(crate) const C1: f32 = SH_C1 as f32;
+pub(crate) const C2: [f32; 5] = narrowed(SH_C2);
+pub(crate) const C3: [f32; 7] = narrowed(SH_C3);
+
+const fn narrowed<const N: usize>(values: [f64; N]) -> [f32; N] {
+    let mut out = [0.0; N];
+    let mut i = 0;
+    while i < N {
+        out[i] = values[i] as f32;
+        i += 1;
+    }
+    out
+}
+
 /// The SH basis of bands 0…degree at a unit direction, in single precision; entries above the
 /// degree are zero.
 #[must_use]
 #[inline(always)]
 pub fn sh_basis_f32([x, y, z]: [f32; 3], degree: ShDegree) -> [f32; 16] {
-    const C0: f32 = SH_C0 as f32;
-    const C1: f32 = SH_C1 as f32;
-    const C2: [f32; 5] =
-        [SH_C2[0] as f32, SH_C2[1] as f32, SH_C2[2] as f32, SH_C2[3] as f32, SH_C2[4] as f32];
-    const C3: [f32; 7] = [
-        SH_C3[0] as f32,
-        SH_C3[1] as f32,
-        SH_C3[2] as f32,
-        SH_C3[3] as f32,
-        SH_C3[4] as f32,
-        SH_C3[5] as f32,
-        SH_C3[6] as f32,
-    ];
     let mut basis = [0.0; 16];
     basis[0] = C0;
     if degree == ShDegree::Zero {

@@ -40,8 +40,8 @@ pub struct ProjectedSplat {
     pub index: u32,
 }
 
-/// log₂ 255: α ≥ 1/255 ⇔ ‖U d‖² ≤ log₂ o + log₂ 255.
-const LOG2_255: f32 = 7.994_353_4;
+/// log₂ (1/255): α ≥ 1/255 ⇔ log₂ o − ‖U d‖² ≥ log₂ (1/255).
+pub(crate) const LOG2_ALPHA_MIN: f32 = -7.994_353_4;
 
 impl ProjectedSplat {
     /// Builds the ellipse from the rows of M = J W R S (pixels), so that Σ' = M Mᵀ + 0.3 I.
@@ -73,7 +73,7 @@ impl ProjectedSplat {
         let scale = (0.5 * LOG2_E).sqrt();
         let log2_opacity = opacity.log2();
         // The opacity is at least 1/255, so this is ≥ 0 up to rounding.
-        let reach = (log2_opacity + LOG2_255).max(0.0).sqrt() / scale;
+        let reach = (log2_opacity - LOG2_ALPHA_MIN).max(0.0).sqrt() / scale;
         let splat = Self {
             x: centre[0],
             y: centre[1],
@@ -89,19 +89,49 @@ impl ProjectedSplat {
         sum.is_finite().then_some(splat)
     }
 
-    /// ‖U d‖² at which α = 1/255.
+    /// The ellipse α = 1/255, prepared for cutting it with strips.
     #[must_use]
     #[inline(always)]
-    pub fn cutoff(&self) -> f32 {
-        self.log2_opacity + LOG2_255
+    pub fn outline(&self) -> Outline {
+        let slope = -self.u12 / self.u11;
+        let cutoff = (self.log2_opacity - LOG2_ALPHA_MIN).max(0.0);
+        let slope_u22 = slope * self.u11 / self.u22;
+        Outline {
+            x: self.x,
+            y: self.y,
+            half_height: self.half_height,
+            slope,
+            inverse_u11: 1.0 / self.u11,
+            u22: self.u22,
+            cutoff,
+            right_end: slope_u22 * cutoff.sqrt()
+                / (self.u22 * (1.0 + slope_u22 * slope_u22).sqrt()),
+        }
     }
+}
 
-    /// Interval of x in which the ellipse α ≥ 1/255 meets the strip `y_min ≤ y ≤ y_max`, pixels;
-    /// `None` when it does not.
+/// The ellipse α = 1/255 of a projected splat: at height dy above its centre it reaches from
+/// slope·dy − w to slope·dy + w, w = √(cutoff − (u22 dy)²) / u11.
+#[derive(Clone, Copy, Debug)]
+pub struct Outline {
+    x: f32,
+    y: f32,
+    half_height: f32,
+    slope: f32,
+    inverse_u11: f32,
+    u22: f32,
+    /// ‖U d‖² on the ellipse.
+    cutoff: f32,
+    /// dy of its rightmost point; the leftmost mirrors it.
+    right_end: f32,
+}
+
+impl Outline {
+    /// Interval of x in which the ellipse meets the strip `y_min ≤ y ≤ y_max`, pixels; `None` when
+    /// it does not.
     ///
-    /// On the ellipse at height dy, x = centre + slope·dy ± √(cutoff − (u22 dy)²) / u11. Over the
-    /// strip the extremes are at the ellipse's own left and right ends if those lie inside, else at
-    /// the nearer edge: the ellipse is convex.
+    /// The extremes are at the ellipse's own left and right ends if those lie inside the strip,
+    /// else at the nearer edge: the ellipse is convex.
     #[must_use]
     #[inline(always)]
     pub fn x_interval(&self, y_min: f32, y_max: f32) -> Option<(f32, f32)> {
@@ -110,19 +140,15 @@ impl ProjectedSplat {
         if low > high {
             return None;
         }
-        let slope = -self.u12 / self.u11;
-        let cutoff = self.cutoff().max(0.0);
-        // Where the ellipse's right end is: dy = slope · Σ'yy-part; the left end mirrors it.
-        let slope_u22 = slope * self.u11 / self.u22;
-        let right_end =
-            slope_u22 * cutoff.sqrt() / (self.u22 * (1.0 + slope_u22 * slope_u22).sqrt());
-        let edge = |dy: f32| {
+        let half_width = |dy: f32| {
             let v = self.u22 * dy;
-            (cutoff - v * v).max(0.0).sqrt() / self.u11
+            (self.cutoff - v * v).max(0.0).sqrt() * self.inverse_u11
         };
-        let at_right = right_end.clamp(low, high);
-        let at_left = (-right_end).clamp(low, high);
-        Some((self.x + slope * at_left - edge(at_left), self.x + slope * at_right + edge(at_right)))
+        let at_right = self.right_end.clamp(low, high);
+        let at_left = (-self.right_end).clamp(low, high);
+        let left = self.x + self.slope * at_left - half_width(at_left);
+        let right = self.x + self.slope * at_right + half_width(at_right);
+        Some((left, right))
     }
 }
 
@@ -175,7 +201,7 @@ mod tests {
         ) {
             let splat = ProjectedSplat::from_factor([3.0, -2.0], mx, my, opacity).unwrap();
             let visible = |x: f32, y: f32| alpha(&splat, x, y) >= ALPHA_MIN * (1.0 + 1e-4);
-            match splat.x_interval(top, top + height) {
+            match splat.outline().x_interval(top, top + height) {
                 None => for i in 0..200 {
                     prop_assert!(!visible(splat.x - 100.0 + i as f32, top + height * 0.5));
                 },

@@ -4,13 +4,12 @@ use glam::DVec3;
 use rayon::prelude::*;
 use trapeze_scene::{Camera, ColorSource, FrameSettings, Scene, ShDegree, Splats, sigmoid};
 
-use super::ProjectedSplat;
 use super::color::{flat_color, limit_channel, motion_reference, sh_basis_f32, sh_color};
+use super::{ProjectedSplat, ProjectedSplats};
 use crate::deform::Deformed;
 use crate::reference::{ALPHA_MIN, JACOBIAN_MARGIN, NEAR_PLANE};
 
-/// Splats that one task projects; fixed, so that the order of the output never depends on the
-/// number of threads.
+/// Splats whose opacities one task computes.
 const CHUNK: usize = 4096;
 
 /// What the projection needs of a scene and does not change with the frame.
@@ -140,20 +139,11 @@ pub fn project(
     deformed: &Deformed,
     camera: &Camera,
     settings: &FrameSettings,
-    out: &mut Vec<ProjectedSplat>,
+    out: &mut ProjectedSplats,
 ) {
     let view = View::new(camera);
     let input = Input { scene, stage, deformed, settings };
-    let chunks: Vec<Vec<ProjectedSplat>> = (0..scene.len().div_ceil(CHUNK))
-        .into_par_iter()
-        .map(|chunk| {
-            let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(scene.len());
-            range.filter_map(|i| input.project(i, &view)).collect()
-        })
-        .collect();
-    out.clear();
-    out.reserve(chunks.iter().map(Vec::len).sum());
-    chunks.iter().for_each(|chunk| out.extend_from_slice(chunk));
+    out.fill(scene.len(), |i| input.project(i, &view));
 }
 
 struct Input<'a> {

@@ -1,6 +1,8 @@
 //! The mirror of the colour.
 
-use trapeze_scene::{SH_C1, SH_C2, SH_C3, ShDegree};
+use trapeze_scene::ShDegree;
+
+use crate::project::{C1, C2, C3};
 
 /// Σ (∂L/∂Yₖ) ∂Yₖ/∂(x, y, z): what the bands 1…`degree` say about the direction, each of its
 /// components taken as free. `by_basis` are the derivatives by the basis functions 1…15.
@@ -10,18 +12,6 @@ pub(super) fn basis_backward(
     degree: ShDegree,
     by_basis: &[f32; 16],
 ) -> [f32; 3] {
-    const C1: f32 = SH_C1 as f32;
-    const C2: [f32; 5] =
-        [SH_C2[0] as f32, SH_C2[1] as f32, SH_C2[2] as f32, SH_C2[3] as f32, SH_C2[4] as f32];
-    const C3: [f32; 7] = [
-        SH_C3[0] as f32,
-        SH_C3[1] as f32,
-        SH_C3[2] as f32,
-        SH_C3[3] as f32,
-        SH_C3[4] as f32,
-        SH_C3[5] as f32,
-        SH_C3[6] as f32,
-    ];
     if degree == ShDegree::Zero {
         return [0.0; 3];
     }

@@ -2,8 +2,8 @@
 
 mod exp2;
 mod stage;
+pub(crate) mod strip;
 mod tile;
 
-pub(crate) use exp2::exp2;
 pub use stage::{Outputs, Target, rasterize};
 pub(crate) use tile::TileRect;

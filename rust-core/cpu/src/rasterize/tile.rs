@@ -1,14 +1,13 @@
 //! Blending the splats of one tile.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x16, mask32x16, u32x16};
+use fearless_simd::{f32x16, u32x16};
 use fearless_simd_macros::simd;
 use trapeze_scene::NO_SPLAT;
 
-use super::exp2::exp2;
+use super::strip::{FULL_CHECK_INTERVAL, ROWS, RowTerms, STRIP, cover, is_open, step};
 use crate::bin::LANES;
 use crate::project::ProjectedSplat;
-use crate::reference::{ALPHA_MAX, TRANSMITTANCE_MIN};
 
 /// The part of every image that one band of tiles covers; empty where an image is not wanted.
 pub(super) struct Band<'a> {
@@ -32,18 +31,9 @@ pub(crate) struct TileRect {
     pub height: u32,
 }
 
-/// Rows of a block: blended together.
-///
-/// One vector of pixels is a long chain of dependent operations (about a hundred cycles); four
-/// side by side fill the processor, and their sums still fit in its registers.
-const ROWS: usize = 4;
-
-/// Rows of a strip: what depends on the row alone is computed for all of them in one vector.
-const STRIP: usize = LANES;
-
 /// A block of `ROWS` rows of sixteen pixels, in registers while it is blended.
 struct Block<S: Simd> {
-    /// T; 0 once a blend would have left too little, after which nothing has weight.
+    /// T; 0 in pixels that are closed.
     transmittance: [f32x16<S>; ROWS],
     color: [[f32x16<S>; ROWS]; 3],
     /// Σ w, the alpha of the image.
@@ -58,12 +48,7 @@ struct Block<S: Simd> {
 #[derive(Clone, Copy, Default)]
 pub(super) struct StripSplat {
     splat: ProjectedSplat,
-    /// u12 dy of each row.
-    shear: [f32; STRIP],
-    /// (u22 dy)² of each row.
-    across: [f32; STRIP],
-    /// Bit r: row r meets the ellipse.
-    rows: u32,
+    terms: RowTerms,
 }
 
 /// Blends the splats that touch a tile, in the order given, and writes the tile into its band.
@@ -116,19 +101,11 @@ fn fill_strip<'a, S: Simd>(
         // Written in place, and kept by moving on: entries are too large to be copied about.
         let entry = &mut strip[used];
         entry.splat = splats[rank as usize];
-        let dy = y - entry.splat.y;
-        let v2 = dy * entry.splat.u22;
-        let across = v2 * v2;
-        (dy * entry.splat.u12).store_array(&mut entry.shear);
-        across.store_array(&mut entry.across);
-        entry.rows = across.simd_le(entry.splat.cutoff()).to_bitmask() as u32;
-        used += usize::from(entry.rows != 0);
+        entry.terms.fill(&entry.splat, y - entry.splat.y);
+        used += usize::from(entry.terms.meets_strip());
     }
     &strip[..used]
 }
-
-/// Splats between two looks at whether a block has been filled up.
-const FULL_CHECK_INTERVAL: usize = 8;
 
 /// Blends one block: `x` are its columns, `first_row` its first row in the strip.
 #[inline(always)]
@@ -148,28 +125,20 @@ fn blend_block<S: Simd, const DEPTH: bool, const TOP: bool>(
         top_weight: [zero; ROWS],
         top: [u32x16::splat(simd, NO_SPLAT); ROWS],
     };
-    let row_bits = ((1 << ROWS) - 1) << first_row;
     for splats in splats.chunks(FULL_CHECK_INTERVAL) {
         for splat in splats {
-            if splat.rows & row_bits != 0 {
+            if splat.terms.meets_block(first_row) {
                 blend::<S, DEPTH, TOP>(simd, splat, x, first_row, &mut block);
             }
         }
-        let mut left = block.transmittance[0];
-        for r in 1..ROWS {
-            left = left.max(block.transmittance[r]);
-        }
-        if !left.simd_gt(zero).any_true() {
+        if !is_open(simd, &block.transmittance) {
             break;
         }
     }
     block
 }
 
-/// Blends one splat into a block.
-///
-/// α ≥ 1/255 is decided on the power, ‖U d‖² ≤ log₂(255 o): the same condition with less rounding.
-/// Lanes where it does not hold compute along and get the weight 0.
+/// Blends one splat into a block. Lanes that do not see it compute along and get the weight 0.
 #[inline(always)]
 fn blend<S: Simd, const DEPTH: bool, const TOP: bool>(
     simd: S,
@@ -179,34 +148,12 @@ fn blend<S: Simd, const DEPTH: bool, const TOP: bool>(
     block: &mut Block<S>,
 ) {
     let splat = &strip.splat;
-    let zero = f32x16::splat(simd, 0.0);
-    let shear: &[f32; ROWS] = strip.shear[first_row..][..ROWS].try_into().expect("ROWS elements");
-    let across: &[f32; ROWS] = strip.across[first_row..][..ROWS].try_into().expect("ROWS elements");
-    let along = (x - splat.x) * splat.u11;
-    let mut power = [zero; ROWS];
-    let mut visible = [mask32x16::splat(simd, false); ROWS];
-    let mut any = mask32x16::splat(simd, false);
-    for r in 0..ROWS {
-        let v1 = along + shear[r];
-        power[r] = v1.mul_add(v1, across[r]);
-        visible[r] = power[r].simd_le(splat.cutoff());
-        any |= visible[r];
-    }
-    if !any.any_true() {
-        return;
-    }
-    for r in 0..ROWS {
-        power[r] = splat.log2_opacity - power[r];
-    }
-    let power_of_two = exp2(simd, power);
+    let Some(coverage) = cover(simd, splat, &strip.terms, x, first_row) else { return };
     for r in 0..ROWS {
         let before = block.transmittance[r];
-        let alpha = power_of_two[r].min(ALPHA_MAX as f32);
-        let full = visible[r].select(alpha * before, zero);
-        let after = before - full;
-        let stays_open = after.simd_gt(TRANSMITTANCE_MIN as f32);
-        let weight = stays_open.select(full, zero);
-        block.transmittance[r] = stays_open.select(after, zero);
+        let step = step(simd, &coverage, r, before);
+        let weight = step.weight;
+        block.transmittance[r] = step.transmittance;
         block.weight[r] += weight;
         for (channel, value) in block.color.iter_mut().zip(splat.color) {
             channel[r] = weight.mul_add(value, channel[r]);
@@ -214,7 +161,7 @@ fn blend<S: Simd, const DEPTH: bool, const TOP: bool>(
         if DEPTH {
             block.weighted_depth[r] = weight.mul_add(splat.depth, block.weighted_depth[r]);
             // A pixel that this splat closes keeps its T; it does not cross anything.
-            let crosses = stays_open & before.simd_gt(0.5) & after.simd_le(0.5);
+            let crosses = step.stays_open & before.simd_gt(0.5) & step.after.simd_le(0.5);
             let depth = f32x16::splat(simd, splat.depth);
             block.median_depth[r] = crosses.select(depth, block.median_depth[r]);
         }

@@ -1,15 +1,18 @@
 //! The backward pass of one tile.
 
+use fearless_simd::f32x16;
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x16, mask32x16};
 use fearless_simd_macros::simd;
 
 use super::reduce::sum_lanes;
 use super::sums::LANES;
 use crate::bin::BandEntry;
 use crate::project::ProjectedSplat;
-use crate::rasterize::{TileRect, exp2};
-use crate::reference::{ALPHA_MAX, TRANSMITTANCE_MIN};
+use crate::rasterize::TileRect;
+use crate::rasterize::strip::{
+    FULL_CHECK_INTERVAL, ROWS, RowTerms, STRIP, block_rows, cover, is_open, step,
+};
+use crate::reference::ALPHA_MAX;
 
 /// What a band of tiles is computed from: rows of the frame and of the gradient.
 #[derive(Clone, Copy)]
@@ -26,24 +29,13 @@ pub(super) struct BandPixels<'a> {
     pub by_depth: &'a [f32],
 }
 
-/// Rows of a block, as in the forward pass.
-const ROWS: usize = 4;
-
-/// Rows of a strip.
-const STRIP: usize = LANES;
-
 /// A splat as one strip sees it.
 #[derive(Clone, Copy, Default)]
 pub(super) struct StripSplat {
     splat: ProjectedSplat,
+    terms: RowTerms,
     /// Distance of each row from the centre.
     dy: [f32; STRIP],
-    /// u12 dy of each row.
-    shear: [f32; STRIP],
-    /// (u22 dy)² of each row.
-    across: [f32; STRIP],
-    /// Bit r: row r meets the ellipse.
-    rows: u32,
     /// Where its sums are.
     position: u32,
 }
@@ -107,13 +99,9 @@ fn fill_strip<'a, S: Simd>(
         entry.splat = splats[entries[position as usize].rank as usize];
         entry.position = position;
         let dy = y - entry.splat.y;
-        let v2 = dy * entry.splat.u22;
-        let across = v2 * v2;
         dy.store_array(&mut entry.dy);
-        (dy * entry.splat.u12).store_array(&mut entry.shear);
-        across.store_array(&mut entry.across);
-        entry.rows = across.simd_le(entry.splat.cutoff()).to_bitmask() as u32;
-        used += usize::from(entry.rows != 0);
+        entry.terms.fill(&entry.splat, dy);
+        used += usize::from(entry.terms.meets_strip());
     }
     &strip[..used]
 }
@@ -188,9 +176,6 @@ fn load_row<S: Simd>(simd: S, values: &[f32]) -> f32x16<S> {
     f32x16::load_array(simd, padded)
 }
 
-/// Splats between two looks at whether a block has been filled up.
-const FULL_CHECK_INTERVAL: usize = 8;
-
 #[inline(always)]
 fn backward_block<S: Simd, const DEPTH: bool>(
     simd: S,
@@ -200,19 +185,13 @@ fn backward_block<S: Simd, const DEPTH: bool>(
     mut block: Block<S>,
     sums: &mut [[f32; LANES]],
 ) {
-    let zero = f32x16::splat(simd, 0.0);
-    let row_bits = ((1 << ROWS) - 1) << first_row;
     for splats in splats.chunks(FULL_CHECK_INTERVAL) {
         for splat in splats {
-            if splat.rows & row_bits != 0 {
+            if splat.terms.meets_block(first_row) {
                 backward_splat::<S, DEPTH>(simd, splat, x, first_row, &mut block, sums);
             }
         }
-        let mut left = block.transmittance[0];
-        for r in 1..ROWS {
-            left = left.max(block.transmittance[r]);
-        }
-        if !left.simd_gt(zero).any_true() {
+        if !is_open(simd, &block.transmittance) {
             break;
         }
     }
@@ -230,37 +209,13 @@ fn backward_splat<S: Simd, const DEPTH: bool>(
 ) {
     let splat = &strip.splat;
     let zero = f32x16::splat(simd, 0.0);
-    let rows = |values: &[f32; STRIP]| -> [f32; ROWS] {
-        values[first_row..][..ROWS].try_into().expect("ROWS elements")
-    };
-    let (dy, shear, across) = (rows(&strip.dy), rows(&strip.shear), rows(&strip.across));
-    let along = (x - splat.x) * splat.u11;
-    let mut v1 = [zero; ROWS];
-    let mut power = [zero; ROWS];
-    let mut visible = [mask32x16::splat(simd, false); ROWS];
-    let mut any = mask32x16::splat(simd, false);
-    for r in 0..ROWS {
-        v1[r] = along + shear[r];
-        power[r] = v1[r].mul_add(v1[r], across[r]);
-        visible[r] = power[r].simd_le(splat.cutoff());
-        any |= visible[r];
-    }
-    if !any.any_true() {
-        return;
-    }
-    for r in 0..ROWS {
-        power[r] = splat.log2_opacity - power[r];
-    }
-    let power_of_two = exp2(simd, power);
+    let Some(coverage) = cover(simd, splat, &strip.terms, x, first_row) else { return };
+    let (v1, dy) = (&coverage.v1, block_rows(&strip.dy, first_row));
     let mut total = [zero; 10];
     for r in 0..ROWS {
-        let before = block.transmittance[r];
-        let alpha = power_of_two[r].min(ALPHA_MAX as f32);
-        let full = visible[r].select(alpha * before, zero);
-        let after = before - full;
-        let stays_open = after.simd_gt(TRANSMITTANCE_MIN as f32);
-        let weight = stays_open.select(full, zero);
-        block.transmittance[r] = stays_open.select(after, zero);
+        let step = step(simd, &coverage, r, block.transmittance[r]);
+        let weight = step.weight;
+        block.transmittance[r] = step.transmittance;
 
         let [by_red, by_green, by_blue, by_weight] = &block.by_sums;
         let mut value = by_red[r].mul_add(splat.color[0], by_weight[r]);
@@ -274,10 +229,11 @@ fn backward_splat<S: Simd, const DEPTH: bool>(
         block.behind[r] = behind;
         // α·∂L/∂α = T α v − α·behind / (1 − α) = w·(v − behind / T after), since w = T α and
         // T after = T (1 − α).
-        let inverse = reciprocal(simd, after);
+        let inverse = reciprocal(simd, step.after);
         let q = weight * (value - behind * inverse);
         // Pixels that are not hit have no T after to divide by; at the clamp α is a constant.
-        let counts = visible[r] & stays_open & power_of_two[r].simd_lt(ALPHA_MAX as f32);
+        let below_clamp = coverage.unlimited_alpha[r].simd_lt(ALPHA_MAX as f32);
+        let counts = coverage.visible[r] & step.stays_open & below_clamp;
         let q = counts.select(q, zero);
 
         total[0] = weight.mul_add(by_red[r], total[0]);

@@ -3,14 +3,14 @@
 use rayon::prelude::*;
 use rdst::RadixSort;
 
-use crate::project::ProjectedSplat;
+use crate::project::{ProjectedSplat, ProjectedSplats};
 
 /// Puts projected splats into drawing order.
 ///
-/// The key is (depth, position in the input) in one 64-bit integer: depths are positive, so their
+/// The key is (depth, place in the input) in one 64-bit integer: depths are positive, so their
 /// bits order as they do, and no two keys are equal, so the unstable radix sort has one possible
-/// result for any number of threads. The input is in the order of the scene, so its position
-/// breaks ties by splat index.
+/// result for any number of threads. The input is in the order of the scene, so its places break
+/// ties by splat index.
 #[derive(Debug, Default)]
 pub struct SortStage {
     keys: Vec<u64>,
@@ -18,11 +18,10 @@ pub struct SortStage {
 
 impl SortStage {
     /// Writes the splats of `input` to `sorted`, nearest first.
-    pub fn sort(&mut self, input: &[ProjectedSplat], sorted: &mut Vec<ProjectedSplat>) {
+    pub fn sort(&mut self, input: &ProjectedSplats, sorted: &mut Vec<ProjectedSplat>) {
         self.keys.clear();
-        self.keys.extend(
-            input.iter().enumerate().map(|(i, s)| u64::from(s.depth.to_bits()) << 32 | i as u64),
-        );
+        self.keys
+            .extend(input.iter().map(|(at, s)| u64::from(s.depth.to_bits()) << 32 | u64::from(at)));
         self.keys.radix_sort_unstable();
         self.order_near_ties(input);
         // Later stages walk the splats in drawing order; moving them now turns those walks into
@@ -30,16 +29,16 @@ impl SortStage {
         self.keys
             .par_iter()
             .with_min_len(4096)
-            .map(|&key| input[key as u32 as usize])
+            .map(|&key| *input.at(key as u32))
             .collect_into_vec(sorted);
     }
 
     /// Orders runs of equal f32 depths by what rounding took from them, then by splat index.
-    fn order_near_ties(&mut self, input: &[ProjectedSplat]) {
+    fn order_near_ties(&mut self, input: &ProjectedSplats) {
         let same_depth = |a: &u64, b: &u64| a >> 32 == b >> 32;
         for run in self.keys.chunk_by_mut(same_depth).filter(|run| run.len() > 1) {
             run.sort_unstable_by(|&a, &b| {
-                let low = |key: u64| input[key as u32 as usize].depth_low;
+                let low = |key: u64| input.at(key as u32).depth_low;
                 low(a).total_cmp(&low(b)).then(a.cmp(&b))
             });
         }
@@ -66,8 +65,11 @@ mod tests {
                     ..Default::default()
                 })
                 .collect();
+            let mut projected = ProjectedSplats::default();
+            // Every third place is left out.
+            projected.fill(input.len() * 3 / 2 + 1, |i| input.get(i / 3 * 2 + i % 3).copied().filter(|_| i % 3 < 2));
             let mut sorted = Vec::new();
-            SortStage::default().sort(&input, &mut sorted);
+            SortStage::default().sort(&projected, &mut sorted);
             let mut expected = input.clone();
             expected.sort_by(|a, b| {
                 let low = a.depth_low.total_cmp(&b.depth_low);
