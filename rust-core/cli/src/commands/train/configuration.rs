@@ -19,6 +19,10 @@ pub(crate) struct TrainingArguments {
     /// that it pays.
     #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = parse_budget)]
     max_splats: SplatBudget,
+    /// With `--max-splats auto`: what a doubling of the scene's numbers has to bring, in dB of PSNR on
+    /// the training views that are set aside.
+    #[arg(long, value_name = "DB", conflicts_with = "fixed")]
+    least_gain: Option<f64>,
     /// Train the initial splats and no others: no growth, no relocation, no noise.
     #[arg(long, conflicts_with = "max_splats")]
     fixed: bool,
@@ -63,6 +67,9 @@ impl TrainingArguments {
             SplatBudget::Most(splats) => TrainingConfig::growing(self.steps, splats),
             SplatBudget::Auto => TrainingConfig::automatic(self.steps, self.ceiling(memory)),
         };
+        if let (Some(search), Some(least_gain)) = (&mut config.search, self.least_gain) {
+            search.least_gain = least_gain;
+        }
         config.sh_degree = self.sh_degree;
         config.seed = self.seed;
         config.holdout = arguments.holdout().map(|every| every as u32);
