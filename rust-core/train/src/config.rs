@@ -89,7 +89,7 @@ pub struct BudgetSearch {
 
 impl Default for BudgetSearch {
     fn default() -> Self {
-        Self { least_gain: 0.5, growth: 0.4, trial: 1.0 / 14.0, validation: 8 }
+        Self { least_gain: 0.2, growth: 0.4, trial: 1.0 / 14.0, validation: 8 }
     }
 }
 
