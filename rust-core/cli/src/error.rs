@@ -37,6 +37,10 @@ pub(crate) enum CliError {
     Encode { path: PathBuf, reason: String },
     #[error("standard output: {0}")]
     Output(std::io::Error),
+    #[error(
+        "GPU {gpu}: expected images of the reference, found others; no kernel can be relied on"
+    )]
+    NoWorkingKernel { gpu: String },
     #[error("cancelled")]
     Cancelled,
     #[error("interrupted after {step} of {steps} steps; the same command with --resume goes on")]

@@ -2,7 +2,7 @@
 
 mod support;
 
-use support::{json, sample_scene, succeed, thinned_scene};
+use support::{json, run, sample_scene, succeed, thinned_scene};
 
 #[test]
 fn the_parts_of_a_scene_are_named_and_counted() {
@@ -32,6 +32,33 @@ fn what_a_scene_lacks_is_absent() {
     for key in ["clusters", "deformation", "motion", "feature_dimensions", "origin"] {
         assert!(info.get(key).is_none(), "{key}");
     }
+}
+
+#[test]
+fn the_gpu_is_named_and_its_kernels_are_checked() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = arguments!["info", thinned_scene(folder.path()), "--gpu", "--json"];
+    let output = run(&[], &arguments);
+    let error = String::from_utf8_lossy(&output.stderr);
+    if error.contains("GPU adapter") {
+        eprintln!("SKIPPED: info --gpu needs a Vulkan or Metal device (mesa-vulkan-drivers)");
+        return;
+    }
+    assert!(output.status.success(), "{error}");
+    let info: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(info["usable"], true);
+    let checks = info["checks"].as_array().unwrap();
+    let names: Vec<_> = checks.iter().map(|c| c["checked"].as_str().unwrap()).collect();
+    let expected =
+        ["still", "moving", "masked", "half_harmonics", "byte_harmonics", "half_network"];
+    assert_eq!(names, expected);
+    for check in checks {
+        assert_eq!(check["passed"], true, "{check}");
+        assert!(check["milliseconds"].as_f64().unwrap() > 0.0, "{check}");
+    }
+    // 867 splats: poses of 48 bytes twice, the image of 1920 × 1080 pixels of 16 bytes, and more.
+    assert!(info["scene"]["memory_bytes"].as_u64().unwrap() > 867 * 96 + 1920 * 1080 * 16);
+    assert!(info["scene"]["variants"].as_array().unwrap().len() == 4);
 }
 
 #[test]

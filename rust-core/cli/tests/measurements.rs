@@ -93,9 +93,27 @@ fn a_report_has_a_row_per_variant_in_all_three_forms() {
         assert!(names.contains(&expected), "{names:?}");
     }
     assert!(names.contains(&"SH degree 0"), "{names:?}");
+    // On machines with a GPU, or with software Vulkan, its variants stand beside the CPU's.
+    if report["device"].is_object() {
+        for expected in ["GPU f32", "GPU f16 network", "GPU 8-bit SH", "GPU 50 % of the splats"] {
+            assert!(names.contains(&expected), "{names:?}");
+        }
+        let figure = |name: &str, key: &str| {
+            let row = rows.iter().find(|row| row["variant"] == name).unwrap();
+            row[key].as_f64().unwrap_or_else(|| panic!("{name} has no {key}"))
+        };
+        assert!(figure("GPU f32", "psnr") >= 60.0);
+        assert!(figure("GPU f16 network", "psnr") >= 45.0);
+        let bytes = |name: &str| figure(name, "device_bytes");
+        assert!(bytes("GPU 8-bit SH") < bytes("GPU f16 SH"));
+        assert!(bytes("GPU f16 SH") < bytes("GPU f32"));
+        assert!(bytes("GPU 25 % of the splats") < bytes("GPU 50 % of the splats"));
+    } else {
+        eprintln!("SKIPPED: the report's GPU variants need a Vulkan or Metal device");
+    }
     for row in rows {
         let name = row["variant"].as_str().unwrap();
-        assert!(markdown.contains(&format!("| {name} |")), "{name}");
+        assert!(markdown.contains(&format!("| {name} ")), "{name}");
         let number = |key: &str| row[key].as_f64().unwrap();
         assert!(number("median_ms") > 0.0 && number("speed_up") > 0.0, "{name}");
         assert!(number("max") >= 0.0 && number("p999") >= 0.0, "{name}");

@@ -16,8 +16,8 @@ pub(crate) struct Arguments {
     /// A splat file (.ply, .compressed.ply, .splat, .spz, .sog, meta.json) or a scene folder.
     #[arg(required_unless_present = "gpu")]
     scene: Option<PathBuf>,
-    /// Tell what the GPU is, and check its kernels against the f64 reference, on the scene or on a
-    /// built-in one; always JSON.
+    /// Tell what the GPU is, and check its kernels: on built-in images, and on the scene if one is
+    /// given, with what it takes on the device; always JSON. Fails when no kernel can be relied on.
     #[arg(long)]
     gpu: bool,
     /// Print JSON.
@@ -83,7 +83,12 @@ struct MotionInfo {
 pub(crate) fn run(arguments: &Arguments) -> Result<(), CliError> {
     let scene = arguments.scene.as_deref().map(load_scene).transpose()?;
     if arguments.gpu {
-        return print_json(&gpu_check::check(scene)?);
+        let check = gpu_check::check(scene)?;
+        print_json(&check)?;
+        return match check.report.usable {
+            true => Ok(()),
+            false => Err(CliError::NoWorkingKernel { gpu: check.report.device.name }),
+        };
     }
     let Some(scene) = scene else {
         return Err(CliError::argument("SCENE", "a splat file or a scene folder", "nothing"));

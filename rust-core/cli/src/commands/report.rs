@@ -4,14 +4,16 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use trapeze_formats::write_atomically;
+use trapeze_gpu::DeviceReport;
 use trapeze_scene::Scene;
 
+use super::render::open_gpu;
 use crate::error::CliError;
 use crate::measure::Machine;
 use crate::output::{print_json, progress_bar};
-use crate::report::{Moment, Report, markdown, measure, plot, variants};
+use crate::report::{Moment, Report, cpu_variants, gpu_variants, markdown, measure, plot};
 use crate::scene_input::{SceneArguments, ViewArguments};
 
 #[derive(Debug, Args)]
@@ -29,9 +31,23 @@ pub(crate) struct Arguments {
     /// Views around the scene, when no camera is given.
     #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=64))]
     views: u32,
+    /// Whose variants to compare.
+    #[arg(long, value_enum, default_value_t)]
+    backend: Compared,
     /// Print JSON instead of the table.
     #[arg(long)]
     json: bool,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum Compared {
+    /// Those of the CPU, and those of the GPU where there is one.
+    #[default]
+    All,
+    /// Those of the CPU.
+    Cpu,
+    /// Those of the GPU.
+    Gpu,
 }
 
 /// Times at which a deformable scene is compared.
@@ -74,9 +90,23 @@ fn make_report(
         .iter()
         .flat_map(|&time| cameras.iter().map(move |c| Moment { camera: c.clone(), time }))
         .collect();
-    let variants = variants(scene);
+    let gpu = match arguments.backend {
+        Compared::Cpu => None,
+        Compared::Gpu => Some(open_gpu()?),
+        Compared::All => open_gpu()
+            .inspect_err(|why| tracing::warn!("the GPU's variants are left out: {why}"))
+            .ok(),
+    };
+    let mut variants = Vec::new();
+    if arguments.backend != Compared::Gpu {
+        variants.extend(cpu_variants(scene));
+    }
+    if gpu.is_some() {
+        variants.extend(gpu_variants(scene));
+    }
     let progress = progress_bar((moments.len() + variants.len()) as u64, "comparing");
-    let rows = measure(scene, &variants, &moments, arguments.frames as usize, &progress)?;
+    let rows =
+        measure(scene, gpu.as_ref(), &variants, &moments, arguments.frames as usize, &progress)?;
     progress.finish_and_clear();
     Ok(Report {
         scene: name,
@@ -85,6 +115,9 @@ fn make_report(
         views: cameras.len(),
         times,
         machine: serde_json::to_value(Machine::this()).unwrap_or_default(),
+        device: gpu
+            .as_ref()
+            .map(|gpu| serde_json::to_value(DeviceReport::of(gpu)).unwrap_or_default()),
         rows,
     })
 }

@@ -36,7 +36,11 @@ pub(crate) fn plot(report: &Report) -> Result<String, PlotError> {
         .light_line_style(WHITE)
         .draw()?;
     chart.draw_series(report.rows.iter().map(|row| {
-        let color = if row.backend == "reference" { BLACK } else { RGBColor(20, 90, 180) };
+        let color = match row.backend.as_str() {
+            "reference" => BLACK,
+            "gpu" => RGBColor(190, 80, 20),
+            _ => RGBColor(20, 90, 180),
+        };
         Circle::new((row.median_ms, quality(row)), 4, color.filled())
     }))?;
     chart.draw_series(report.rows.iter().enumerate().map(|(i, row)| {

@@ -34,7 +34,7 @@ pub(crate) fn load(path: &Path) -> Scene {
     load_scene(path).unwrap()
 }
 
-fn run(environment: &[(&str, &OsStr)], arguments: &[impl AsRef<OsStr>]) -> Output {
+pub(crate) fn run(environment: &[(&str, &OsStr)], arguments: &[impl AsRef<OsStr>]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_trapeze"))
         .args(arguments)
         .env_remove("RUST_LOG")
