@@ -1,5 +1,6 @@
 //! `trapeze bench`.
 
+mod gradient;
 mod search;
 mod train;
 
@@ -25,6 +26,8 @@ use crate::scene_input::{SceneArguments, ViewArguments};
 pub(crate) enum Bench {
     /// Whole frames and each stage, with the error against the f64 reference.
     Render(RenderArguments),
+    /// Frames forward and backward, with the gradients' error.
+    Gradient(gradient::Arguments),
     /// The deformation network, with the error against the f64 reference.
     Deform(DeformArguments),
     /// Reading a splat file.
@@ -154,6 +157,7 @@ impl Bench {
     pub(crate) fn run(&self) -> Result<(), CliError> {
         let (report, json) = match self {
             Self::Render(arguments) => (render(arguments)?, arguments.json),
+            Self::Gradient(arguments) => (gradient::run(arguments)?, arguments.json),
             Self::Deform(arguments) => (deform(arguments)?, arguments.json),
             Self::Load(arguments) => (load(arguments)?, arguments.json),
             Self::Train(arguments) => return train::run(arguments),

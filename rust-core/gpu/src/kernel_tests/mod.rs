@@ -1,5 +1,6 @@
 //! Kernels by themselves, on the device at hand.
 
+mod activation;
 mod metal;
 mod sort;
 mod trigonometry;
