@@ -8,12 +8,13 @@ use trapeze_cpu::{Renderer, reference};
 use trapeze_formats::write_npy;
 use trapeze_gpu::{Gpu, GpuOptions};
 use trapeze_scene::{
-    Camera, ClusterSet, ColorSource, Frame, FrameSettings, NO_SPLAT, Scene, Selection, ShDegree,
+    Camera, ClusterSet, ColorSource, Frame, FrameSettings, NO_SPLAT, Rgba8, Scene, Selection,
+    ShDegree,
 };
 
 use crate::dataset_input::parse_color;
 use crate::error::CliError;
-use crate::output::{Rgba8, depth_image, progress_bar, to_rgba8, write_animation, write_png};
+use crate::output::{progress_bar, write_animation, write_png};
 use crate::scene_input::{SceneArguments, ViewArguments};
 
 #[derive(Debug, Args)]
@@ -286,9 +287,11 @@ fn path_moment(
 fn picture(arguments: &Arguments, painter: &Painter, frame: &Frame) -> Rgba8 {
     let (width, height) = (frame.width, frame.height);
     match arguments.mode {
-        Mode::Color | Mode::Clusters | Mode::Motion => to_rgba8(frame, arguments.background.0),
-        Mode::Depth => depth_image(&frame.expected_depth, width, height),
-        Mode::DepthMedian => depth_image(&frame.median_depth, width, height),
+        Mode::Color | Mode::Clusters | Mode::Motion => {
+            Rgba8::of_colors(frame, arguments.background.0)
+        }
+        Mode::Depth => Rgba8::of_depth(&frame.expected_depth, width, height),
+        Mode::DepthMedian => Rgba8::of_depth(&frame.median_depth, width, height),
         Mode::Alpha => {
             let grey = |&[.., a]: &[f32; 4]| {
                 let v = (a.clamp(0.0, 1.0) * 255.0).round() as u8;

@@ -4,9 +4,9 @@ use std::io::Write;
 use std::path::Path;
 
 use trapeze_formats::write_atomically;
+use trapeze_scene::Rgba8;
 use webp::{AnimEncoder, AnimFrame, WebPConfig};
 
-use super::Rgba8;
 use crate::error::CliError;
 
 /// Quality of the lossy frames, 0–100: artefacts below what a browser shows.

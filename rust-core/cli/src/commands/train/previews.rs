@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 
+use trapeze_scene::Rgba8;
 use trapeze_train::Trainer;
 use trapeze_train::backend::TrainingBackend;
 use trapeze_train::config::Background;
 
 use super::output::OutputFolder;
 use crate::error::CliError;
-use crate::output::{to_rgba8, write_png};
+use crate::output::write_png;
 
 /// Writes the first training view every so often: `previews/step-000500.png`.
 pub(super) struct Previews {
@@ -39,7 +40,7 @@ impl Previews {
             Background::Fixed(color) => Some(color),
             Background::Random => None,
         };
-        write_png(&path, &to_rgba8(&frame, background))
+        write_png(&path, &Rgba8::of_colors(&frame, background))
     }
 }
 
