@@ -44,6 +44,14 @@ pub enum ParseError {
     /// The tensors are not a known network.
     #[error(transparent)]
     Architecture(#[from] ArchitectureError),
+    /// There is no memory for what the file holds.
+    #[error("{field}: {bytes} bytes are needed, the system has not that many")]
+    OutOfMemory {
+        /// What it is for.
+        field: String,
+        /// Bytes that it takes.
+        bytes: u64,
+    },
     /// The operating system failed to deliver the data.
     #[error("{0}")]
     Io(#[from] std::io::Error),

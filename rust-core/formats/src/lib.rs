@@ -46,7 +46,7 @@ pub use cluster_names::{
 };
 pub use clusters_bin::{parse_clusters_bin, read_clusters_bin, write_clusters_bin};
 pub use error::{ParseError, ReadError, WriteError};
-pub use load::load_scene;
+pub use load::{LoadPart, load_scene, load_scene_with};
 pub use mask::{
     MaskSettings, parse_mask_bin, parse_mask_json, read_mask_bin, read_mask_json, write_mask_bin,
     write_mask_json,

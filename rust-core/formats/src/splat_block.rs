@@ -1,6 +1,8 @@
 //! Filling the columns of a scene from many threads.
 
-use trapeze_scene::{ShDegree, Splats};
+use trapeze_scene::{GEOMETRY_BYTES_PER_SPLAT, ShDegree, Splats};
+
+use crate::ParseError;
 
 /// Splats that one task writes: enough to pay for the task, few enough that what it reads and
 /// writes stays in the second-level cache (at 500 bytes per splat, 1 MB).
@@ -21,9 +23,24 @@ pub(crate) struct SplatBlock<'a> {
     pub(crate) features: &'a mut [f32],
 }
 
+/// Checks that there is memory for splats before it is taken in pieces that cannot be refused: a
+/// system that is short of it is told about as an error, not by the end of the program.
+pub(crate) fn expect_memory_for(count: usize, sh_degree: ShDegree) -> Result<(), ParseError> {
+    let rest = sh_degree.rest_coefficients() as u64 * 3 * 4;
+    let bytes = (count as u64).saturating_mul(GEOMETRY_BYTES_PER_SPLAT + rest);
+    let refused = || ParseError::OutOfMemory { field: format!("{count} splats"), bytes };
+    let length = usize::try_from(bytes).map_err(|_| refused())?;
+    // Given back at once, untouched.
+    Vec::<u8>::new().try_reserve_exact(length).map_err(|_| refused())
+}
+
 /// Splats of zeros to be filled. The pages are not touched before that.
-pub(crate) fn zeroed_splats(count: usize, sh_degree: ShDegree) -> Splats {
-    Splats {
+///
+/// # Errors
+/// [`ParseError::OutOfMemory`].
+pub(crate) fn zeroed_splats(count: usize, sh_degree: ShDegree) -> Result<Splats, ParseError> {
+    expect_memory_for(count, sh_degree)?;
+    Ok(Splats {
         positions: vec![[0.0; 3]; count],
         log_scales: vec![[0.0; 3]; count],
         rotations: vec![[0.0; 4]; count],
@@ -31,7 +48,7 @@ pub(crate) fn zeroed_splats(count: usize, sh_degree: ShDegree) -> Splats {
         sh_dc: vec![[0.0; 3]; count],
         sh_rest: vec![0.0; count * sh_degree.rest_coefficients() * 3],
         sh_degree,
-    }
+    })
 }
 
 impl<'a> SplatBlock<'a> {
@@ -105,9 +122,17 @@ mod tests {
     use super::*;
 
     #[test]
+    fn more_splats_than_memory_are_refused_with_their_size() {
+        // 2⁵⁶ bytes and more: beyond every address space.
+        let error = zeroed_splats(1 << 50, ShDegree::Three).unwrap_err().to_string();
+        assert!(error.starts_with("1125899906842624 splats: "), "{error}");
+        assert!(zeroed_splats(usize::MAX, ShDegree::Three).is_err());
+    }
+
+    #[test]
     fn every_value_of_every_splat_is_visited_once() {
         for count in [0, 1, 2048, 2049, 5 * 2048 + 17] {
-            let mut splats = zeroed_splats(count, ShDegree::One);
+            let mut splats = zeroed_splats(count, ShDegree::One).unwrap();
             let mut features = vec![0.0; count * 2];
             SplatBlock::all(&mut splats, &mut features).for_each_part(&|block| {
                 for i in 0..block.len() {

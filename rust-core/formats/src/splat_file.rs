@@ -50,7 +50,7 @@ pub fn parse_splat_file(bytes: &[u8]) -> Result<Scene, ParseError> {
     if records.len() > u32::MAX as usize {
         return Err(SceneError::TooManySplats { found: records.len() }.into());
     }
-    let mut splats = zeroed_splats(records.len(), ShDegree::Zero);
+    let mut splats = zeroed_splats(records.len(), ShDegree::Zero)?;
     SplatBlock::all(&mut splats, &mut []).for_each_part(&|mut block| {
         for i in 0..block.len() {
             store(&records[block.first + i], &mut block, i);

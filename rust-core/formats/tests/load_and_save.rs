@@ -6,12 +6,14 @@ mod checkpoint;
 #[allow(dead_code, reason = "shared by all test binaries")]
 mod scenes;
 
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use scenes::random_scene;
 use tempfile::tempdir;
 use trapeze_formats::{
-    WEIGHTS_BIN_BYTES, load_scene, parse_deform_pth, parse_weights_bin, save_scene,
+    LoadPart, WEIGHTS_BIN_BYTES, load_scene, load_scene_with, parse_deform_pth, parse_weights_bin,
+    save_scene,
 };
 use trapeze_scene::{Clusters, Motion, MotionMeasure, Scene, ShDegree, edit};
 
@@ -88,6 +90,22 @@ fn a_folder_keeps_every_part_and_what_is_left_stays_consistent() {
     save_scene(&path, &edited).unwrap();
     assert_eq!(load_scene(&path).unwrap(), edited);
     assert_eq!(names(&path).len(), 6);
+}
+
+#[test]
+fn a_load_can_be_broken_off_before_each_of_its_parts() {
+    let folder = tempdir().unwrap();
+    save_scene(folder.path(), &complete_scene(20)).unwrap();
+    let parts = [LoadPart::Splats, LoadPart::Network, LoadPart::Clusters, LoadPart::Motion];
+    for (i, last) in parts.into_iter().enumerate() {
+        let mut told = Vec::new();
+        let scene = load_scene_with(folder.path(), |part| {
+            told.push(part);
+            if part == last { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        assert_eq!(scene.unwrap(), None);
+        assert_eq!(told, parts[..=i]);
+    }
 }
 
 #[test]

@@ -36,7 +36,7 @@ pub(super) fn read_splats(header: &Header, bytes: &[u8]) -> Result<Scene, ParseE
         return Err(SceneError::TooManySplats { found: vertex.count }.into());
     }
     let mut target = Target {
-        splats: zeroed_splats(vertex.count, layout.sh_degree),
+        splats: zeroed_splats(vertex.count, layout.sh_degree)?,
         features: vec![0.0; vertex.count * layout.feature_dimensions()],
     };
     let origin = match (body.byte_order(), fixed_columns(vertex)) {

@@ -10,6 +10,7 @@ use super::image::{Images, Pixels};
 use super::meta::{Meta, Palette};
 use crate::ParseError;
 use crate::recentre::recentre_f64;
+use crate::splat_block::expect_memory_for;
 
 /// Splats that one task decodes.
 const CHUNK: usize = 1 << 14;
@@ -21,6 +22,8 @@ const LARGEST_IS_W: u8 = 252;
 /// Decodes images that have at least `meta.count` pixels each.
 pub(super) fn scene(meta: &Meta, images: &Images) -> Result<Scene, ParseError> {
     let n = meta.count as usize;
+    let highest = if meta.palette.is_some() { ShDegree::Three } else { ShDegree::Zero };
+    expect_memory_for(n, highest)?;
     let (sh_rest, sh_degree) = match (&meta.palette, &images.palette) {
         (Some(palette), Some([centroids, labels])) => sh_rest(palette, centroids, labels, n)?,
         _ => (Vec::new(), ShDegree::Zero),

@@ -9,12 +9,15 @@ use super::{AxisSigns, COLOR_STEPS, LOG_SCALE_OFFSET, LOG_SCALE_STEPS, SH_STEPS}
 use crate::ParseError;
 use crate::quantised::logit_of_byte;
 use crate::recentre::recentre_f32;
+use crate::splat_block::expect_memory_for;
 
 /// Splats that one task decodes.
 const CHUNK: usize = 1 << 14;
 
 /// Decodes a file whose streams have the lengths that its header promises.
 pub(super) fn scene(file: &SpzFile) -> Result<Scene, ParseError> {
+    let degree = ShDegree::try_from(u32::from(file.header.sh_degree).min(3))?;
+    expect_memory_for(file.header.splats as usize, degree)?;
     let [positions, alphas, colors, scales, rotations, sh] = &file.streams;
     let signs = &file.signs;
     let log_scale = |b: u8| f32::from(b) / LOG_SCALE_STEPS + LOG_SCALE_OFFSET;

@@ -25,7 +25,7 @@ pub(in crate::ply) fn is_compressed(header: &Header) -> bool {
 /// Reads the splats of a compressed file whose header is parsed.
 pub(in crate::ply) fn read_compressed(header: &Header, bytes: &[u8]) -> Result<Scene, ParseError> {
     let file = CompressedFile::locate(header, bytes)?;
-    let mut splats = zeroed_splats(file.count, file.sh_degree());
+    let mut splats = zeroed_splats(file.count, file.sh_degree())?;
     SplatBlock::all(&mut splats, &mut []).for_each_part(&|mut block| {
         for i in 0..block.len() {
             file.store(block.first + i, &mut block, i);
