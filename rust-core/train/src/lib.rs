@@ -24,6 +24,7 @@ pub mod backend;
 pub mod checkpoint;
 pub mod config;
 mod cpu_backend;
+mod defaults;
 pub mod densify;
 pub mod evaluation;
 mod exponential;
@@ -39,6 +40,7 @@ mod state;
 pub mod trainer;
 
 pub use cpu_backend::{CpuBackend, CpuBackendOptions, CpuStepTimes};
+pub use defaults::{background_for_training, splat_ceiling};
 pub use gpu_backend::{GpuBackend, GpuBackendOptions, GpuMemoryPlan, GpuStepTimes};
 pub use parameters::{ParameterGroup, zeros_like};
 pub use reference_backend::ReferenceBackend;

@@ -1,10 +1,10 @@
 //! From arguments to the settings of a run.
 
 use clap::Args;
-use trapeze_formats::dataset::{Dataset, load_image};
+use trapeze_formats::dataset::Dataset;
 use trapeze_scene::ShDegree;
-use trapeze_train::TrainingState;
 use trapeze_train::config::{Background, TrainingConfig};
+use trapeze_train::{background_for_training, splat_ceiling};
 
 use crate::dataset_input::{DatasetArguments, parse_color};
 use crate::error::CliError;
@@ -48,12 +48,6 @@ enum SplatBudget {
     Most(u32),
 }
 
-/// The most splats that a search tries, if the memory allows.
-const CEILING: u64 = 2_000_000;
-/// Share of the memory that the state of the splats may take; the rest is for photographs and
-/// working memory.
-const STATE_SHARE: u64 = 8;
-
 impl TrainingArguments {
     /// The settings for a dataset, in `memory` bytes.
     pub(super) fn configuration(
@@ -65,7 +59,10 @@ impl TrainingArguments {
         let mut config = match self.max_splats {
             _ if self.fixed => TrainingConfig::fixed(self.steps),
             SplatBudget::Most(splats) => TrainingConfig::growing(self.steps, splats),
-            SplatBudget::Auto => TrainingConfig::automatic(self.steps, self.ceiling(memory)),
+            SplatBudget::Auto => {
+                let degree = ShDegree::try_from(self.sh_degree)?;
+                TrainingConfig::automatic(self.steps, splat_ceiling(memory, degree))
+            }
         };
         if let (Some(search), Some(least_gain)) = (&mut config.search, self.least_gain) {
             search.least_gain = least_gain;
@@ -75,30 +72,13 @@ impl TrainingArguments {
         config.holdout = arguments.holdout().map(|every| every as u32);
         config.background = match self.background {
             Some(background) => background,
-            None => default_background(dataset)?,
+            None => background_for_training(dataset)?,
         };
         if let Some(count) = self.random_splats {
             config.initial.random_count = count;
         }
         Ok(config)
     }
-
-    fn ceiling(&self, memory: u64) -> u32 {
-        let degree = ShDegree::try_from(self.sh_degree).unwrap_or(ShDegree::Three);
-        let fitting = memory / STATE_SHARE / TrainingState::bytes(1, degree);
-        // In powers of two: the same on machines that differ by a few megabytes.
-        let power = fitting.max(1).ilog2();
-        (1u64 << power).min(CEILING) as u32
-    }
-}
-
-/// Random where the first photograph has transparency: nothing may stand in for the background.
-fn default_background(dataset: &Dataset) -> Result<Background, CliError> {
-    let has_alpha = match dataset.training_views().next() {
-        Some(index) => load_image(&dataset.views[index])?.has_alpha(),
-        None => false,
-    };
-    Ok(if has_alpha { Background::Random } else { Background::Fixed([0.0; 3]) })
 }
 
 fn parse_budget(text: &str) -> Result<SplatBudget, String> {
