@@ -1,0 +1,65 @@
+//! The end of a run: its scene as a file, and how good that is.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use trapeze_formats::dataset::Dataset;
+use trapeze_formats::{load_scene, ply, write_atomically};
+use trapeze_scene::FrameSettings;
+use trapeze_train::CpuBackend;
+use trapeze_train::evaluation::evaluate;
+use trapeze_train::trainer::Trainer as Run;
+
+use super::checkpoints;
+use crate::failure::Failure;
+use crate::ffi::{Stage, TestFigures};
+use crate::work::Work;
+
+/// Name of the splats in the folder of a run.
+const SPLATS: &str = "point_cloud.ply";
+/// Name of the summary: with it a run is complete.
+const SUMMARY: &str = "training.json";
+
+/// A folder whose run is complete has nothing to go on with, and is not written over.
+pub(super) fn refuse_finished(folder: &Path) -> Result<(), Failure> {
+    if folder.join(SUMMARY).exists() {
+        let found = format!("a complete run in {}", folder.display());
+        return Err(Failure::argument("training folder", "a new run, or one to go on with", found));
+    }
+    Ok(())
+}
+
+/// Writes the scene and the summary, and removes the checkpoints.
+pub(super) fn finish(
+    run: &mut Run<CpuBackend>,
+    dataset: &Dataset,
+    folder: &Path,
+    work: &Work,
+) -> Result<TestFigures, Failure> {
+    work.step(Stage::Writing, None)?;
+    let splats = folder.join(SPLATS);
+    ply::write_ply(&splats, &run.scene()?)?;
+    let mut summary = run.summary();
+    // The file is evaluated, as anyone else would load it, not what was in memory.
+    let mut renderer = trapeze_cpu::Renderer::new(Arc::new(load_scene(&splats)?));
+    let views: Vec<usize> = dataset.test_views().collect();
+    let mut done = 0;
+    summary.test = evaluate(dataset, &views, None, |index| {
+        work.step(Stage::Measuring, Some(f64::from(done) / views.len() as f64))?;
+        done += 1;
+        let view = &dataset.views[index];
+        let time = view.time.unwrap_or(0.0);
+        let settings = FrameSettings { time, ..FrameSettings::default() };
+        Ok::<_, Failure>(renderer.render(&view.camera, &settings)?)
+    })?;
+    write_atomically(&folder.join(SUMMARY), |file| {
+        serde_json::to_writer_pretty(&mut *file, &summary)?;
+        std::io::Write::write_all(file, b"\n")
+    })?;
+    checkpoints(folder).remove()?;
+    let mean = summary.test.map(|test| test.mean);
+    Ok(TestFigures {
+        psnr: mean.map_or(f64::NAN, |mean| mean.psnr),
+        ssim: mean.map_or(f64::NAN, |mean| mean.ssim),
+    })
+}
