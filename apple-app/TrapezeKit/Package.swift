@@ -1,11 +1,27 @@
 // swift-tools-version: 6.0
 import PackageDescription
 
+// The core, as C functions. On Apple systems an xcframework of static libraries, which
+// `scripts/build-xcframework` makes; on Linux the headers, and the static library that
+// `scripts/build-bridge` makes.
 #if os(Linux)
+  let library =
+    Context.environment["TRAPEZE_LIBRARY_DIR"] ?? "\(Context.packageDirectory)/../../target/swift"
+  let core = Target.target(
+    name: "CTrapeze",
+    linkerSettings: [
+      .unsafeFlags(["-L\(library)"]), .linkedLibrary("trapeze_bridge"), .linkedLibrary("m"),
+      .linkedLibrary("dl"), .linkedLibrary("pthread"),
+    ])
   // Foundation on Linux refers to symbols of Observation that its shared library resolves at run time.
   let linkerSettings: [LinkerSetting] = [.unsafeFlags(["-Xlinker", "--allow-shlib-undefined"])]
 #else
-  let linkerSettings: [LinkerSetting] = []
+  let core = Target.binaryTarget(name: "CTrapeze", path: "Frameworks/CTrapeze.xcframework")
+  let linkerSettings: [LinkerSetting] = [
+    .linkedFramework("Metal"), .linkedFramework("QuartzCore"), .linkedFramework("CoreGraphics"),
+    .linkedFramework("IOKit", .when(platforms: [.macOS])), .linkedLibrary("c++"),
+    .linkedLibrary("objc"),
+  ]
 #endif
 
 let package = Package(
@@ -16,9 +32,13 @@ let package = Package(
     .library(name: "TrapezeKit", targets: ["TrapezeKit"])
   ],
   targets: [
-    .target(name: "TrapezeKit", linkerSettings: linkerSettings),
+    core,
+    .target(name: "TrapezeBridge", dependencies: ["CTrapeze"]),
+    .target(
+      name: "TrapezeKit", dependencies: ["TrapezeBridge"], linkerSettings: linkerSettings),
     .testTarget(
-      name: "TrapezeKitTests", dependencies: ["TrapezeKit"], resources: [.copy("Fixtures")]),
+      name: "TrapezeKitTests", dependencies: ["TrapezeKit", "TrapezeBridge"],
+      resources: [.copy("Fixtures")]),
   ],
   swiftLanguageModes: [.v6]
 )
