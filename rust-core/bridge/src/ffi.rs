@@ -17,6 +17,7 @@ use crate::image::Image;
 use crate::measure::Measurements;
 use crate::renderer::{Renderer, make_renderer};
 use crate::scene::{Scene, core_version, open_scene};
+use crate::searcher::{Hits, SearchModel, Searcher, make_searcher, open_search_model};
 use crate::self_check::{SelfCheck, check_device};
 use crate::trainer::{Trainer, make_trainer};
 use crate::work::Work;
@@ -170,6 +171,13 @@ mod ffi {
         frame_milliseconds: f64,
         // Infinite when the images are equal.
         psnr: f64,
+    }
+
+    #[swift_bridge(swift_repr = "struct")]
+    struct HitFigures {
+        cluster: u32,
+        // The text's share against texts that mean nothing in particular, 0–1.
+        score: f64,
     }
 
     // Decibels are NaN for equal images.
@@ -366,6 +374,37 @@ mod ffi {
         #[swift_bridge(Sendable)]
         type Measurements;
         fn measurement(self: &Measurements, index: usize) -> MeasurementFigures;
+    }
+
+    extern "Rust" {
+        #[swift_bridge(Sendable)]
+        type SearchModel;
+        fn open_search_model(path: String, work: &Work) -> Result<SearchModel, Failure>;
+        fn name(self: &SearchModel) -> String;
+    }
+
+    extern "Rust" {
+        #[swift_bridge(Sendable)]
+        type Searcher;
+        fn make_searcher(model: &SearchModel, scene: &Scene) -> Result<Searcher, Failure>;
+        // The renderer is one of the same scene. Features are kept in the folder `cache`; an empty
+        // name keeps them nowhere.
+        fn encode(
+            self: &Searcher,
+            renderer: &Renderer,
+            cache: String,
+            work: &Work,
+        ) -> Result<(), Failure>;
+        fn encoded_clusters(self: &Searcher) -> Vec<u32>;
+        fn thumbnail(self: &Searcher, renderer: &Renderer, cluster: u32) -> Result<Image, Failure>;
+        fn search(self: &Searcher, text: String) -> Result<Hits, Failure>;
+    }
+
+    extern "Rust" {
+        #[swift_bridge(Sendable)]
+        type Hits;
+        fn count(self: &Hits) -> usize;
+        fn hit(self: &Hits, index: usize) -> HitFigures;
     }
 
     extern "Rust" {

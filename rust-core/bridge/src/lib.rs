@@ -24,6 +24,7 @@ mod image;
 mod measure;
 mod renderer;
 mod scene;
+mod searcher;
 mod self_check;
 mod trainer;
 mod work;

@@ -99,6 +99,8 @@ typedef struct __swift_bridge__$PickFigures { bool is_hit; uint32_t splat; bool 
 typedef struct __swift_bridge__$Option$PickFigures { bool is_some; __swift_bridge__$PickFigures val; } __swift_bridge__$Option$PickFigures;
 typedef struct __swift_bridge__$MeasurementFigures { double frame_milliseconds; double psnr; } __swift_bridge__$MeasurementFigures;
 typedef struct __swift_bridge__$Option$MeasurementFigures { bool is_some; __swift_bridge__$MeasurementFigures val; } __swift_bridge__$Option$MeasurementFigures;
+typedef struct __swift_bridge__$HitFigures { uint32_t cluster; double score; } __swift_bridge__$HitFigures;
+typedef struct __swift_bridge__$Option$HitFigures { bool is_some; __swift_bridge__$HitFigures val; } __swift_bridge__$Option$HitFigures;
 typedef struct __swift_bridge__$CheckFigures { double psnr; double milliseconds; bool passed; } __swift_bridge__$CheckFigures;
 typedef struct __swift_bridge__$Option$CheckFigures { bool is_some; __swift_bridge__$CheckFigures val; } __swift_bridge__$Option$CheckFigures;
 typedef struct __swift_bridge__$DatasetFigures { uintptr_t views; uint32_t width; uint32_t height; uint64_t points; } __swift_bridge__$DatasetFigures;
@@ -219,6 +221,42 @@ void* __swift_bridge__$Vec_Measurements$get_mut(void* vec_ptr, uintptr_t index);
 uintptr_t __swift_bridge__$Vec_Measurements$len(void* vec_ptr);
 void* __swift_bridge__$Vec_Measurements$as_ptr(void* vec_ptr);
 
+typedef struct SearchModel SearchModel;
+void __swift_bridge__$SearchModel$_free(void* self);
+
+void* __swift_bridge__$Vec_SearchModel$new(void);
+void __swift_bridge__$Vec_SearchModel$drop(void* vec_ptr);
+void __swift_bridge__$Vec_SearchModel$push(void* vec_ptr, void* item_ptr);
+void* __swift_bridge__$Vec_SearchModel$pop(void* vec_ptr);
+void* __swift_bridge__$Vec_SearchModel$get(void* vec_ptr, uintptr_t index);
+void* __swift_bridge__$Vec_SearchModel$get_mut(void* vec_ptr, uintptr_t index);
+uintptr_t __swift_bridge__$Vec_SearchModel$len(void* vec_ptr);
+void* __swift_bridge__$Vec_SearchModel$as_ptr(void* vec_ptr);
+
+typedef struct Searcher Searcher;
+void __swift_bridge__$Searcher$_free(void* self);
+
+void* __swift_bridge__$Vec_Searcher$new(void);
+void __swift_bridge__$Vec_Searcher$drop(void* vec_ptr);
+void __swift_bridge__$Vec_Searcher$push(void* vec_ptr, void* item_ptr);
+void* __swift_bridge__$Vec_Searcher$pop(void* vec_ptr);
+void* __swift_bridge__$Vec_Searcher$get(void* vec_ptr, uintptr_t index);
+void* __swift_bridge__$Vec_Searcher$get_mut(void* vec_ptr, uintptr_t index);
+uintptr_t __swift_bridge__$Vec_Searcher$len(void* vec_ptr);
+void* __swift_bridge__$Vec_Searcher$as_ptr(void* vec_ptr);
+
+typedef struct Hits Hits;
+void __swift_bridge__$Hits$_free(void* self);
+
+void* __swift_bridge__$Vec_Hits$new(void);
+void __swift_bridge__$Vec_Hits$drop(void* vec_ptr);
+void __swift_bridge__$Vec_Hits$push(void* vec_ptr, void* item_ptr);
+void* __swift_bridge__$Vec_Hits$pop(void* vec_ptr);
+void* __swift_bridge__$Vec_Hits$get(void* vec_ptr, uintptr_t index);
+void* __swift_bridge__$Vec_Hits$get_mut(void* vec_ptr, uintptr_t index);
+uintptr_t __swift_bridge__$Vec_Hits$len(void* vec_ptr);
+void* __swift_bridge__$Vec_Hits$as_ptr(void* vec_ptr);
+
 typedef struct SelfCheck SelfCheck;
 void __swift_bridge__$SelfCheck$_free(void* self);
 
@@ -301,6 +339,15 @@ void* __swift_bridge__$Renderer$shed_memory(void* self);
 void* __swift_bridge__$Renderer$suspend(void* self);
 void* __swift_bridge__$Renderer$resume(void* self);
 struct __swift_bridge__$MeasurementFigures __swift_bridge__$Measurements$measurement(void* self, uintptr_t index);
+struct __private__ResultPtrAndPtr __swift_bridge__$open_search_model(void* path, void* work);
+void* __swift_bridge__$SearchModel$name(void* self);
+struct __private__ResultPtrAndPtr __swift_bridge__$make_searcher(void* model, void* scene);
+void* __swift_bridge__$Searcher$encode(void* self, void* renderer, void* cache, void* work);
+void* __swift_bridge__$Searcher$encoded_clusters(void* self);
+struct __private__ResultPtrAndPtr __swift_bridge__$Searcher$thumbnail(void* self, void* renderer, uint32_t cluster);
+struct __private__ResultPtrAndPtr __swift_bridge__$Searcher$search(void* self, void* text);
+uintptr_t __swift_bridge__$Hits$count(void* self);
+struct __swift_bridge__$HitFigures __swift_bridge__$Hits$hit(void* self, uintptr_t index);
 struct __private__ResultPtrAndPtr __swift_bridge__$check_device(void* device, void* work);
 void* __swift_bridge__$SelfCheck$device_name(void* self);
 uintptr_t __swift_bridge__$SelfCheck$count(void* self);

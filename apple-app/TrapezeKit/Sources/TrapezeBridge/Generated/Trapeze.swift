@@ -15,6 +15,12 @@ public func open_device(_ backend: Backend, _ work: WorkRef) throws -> Device {
 public func make_renderer(_ device: DeviceRef, _ scene: SceneRef, _ options: RendererParameters, _ work: WorkRef) throws -> Renderer {
     try { let val = __swift_bridge__$make_renderer(device.ptr, scene.ptr, options.intoFfiRepr(), work.ptr); if val.is_ok { return Renderer(ptr: val.ok_or_err!) } else { throw Failure(ptr: val.ok_or_err!) } }()
 }
+public func open_search_model<GenericIntoRustString: IntoRustString>(_ path: GenericIntoRustString, _ work: WorkRef) throws -> SearchModel {
+    try { let val = __swift_bridge__$open_search_model({ let rustString = path.intoRustString(); rustString.isOwned = false; return rustString.ptr }(), work.ptr); if val.is_ok { return SearchModel(ptr: val.ok_or_err!) } else { throw Failure(ptr: val.ok_or_err!) } }()
+}
+public func make_searcher(_ model: SearchModelRef, _ scene: SceneRef) throws -> Searcher {
+    try { let val = __swift_bridge__$make_searcher(model.ptr, scene.ptr); if val.is_ok { return Searcher(ptr: val.ok_or_err!) } else { throw Failure(ptr: val.ok_or_err!) } }()
+}
 public func check_device(_ device: DeviceRef, _ work: WorkRef) throws -> SelfCheck {
     try { let val = __swift_bridge__$check_device(device.ptr, work.ptr); if val.is_ok { return SelfCheck(ptr: val.ok_or_err!) } else { throw Failure(ptr: val.ok_or_err!) } }()
 }
@@ -1017,6 +1023,45 @@ extension __swift_bridge__$Option$MeasurementFigures {
             return __swift_bridge__$Option$MeasurementFigures(is_some: true, val: v.intoFfiRepr())
         } else {
             return __swift_bridge__$Option$MeasurementFigures(is_some: false, val: __swift_bridge__$MeasurementFigures())
+        }
+    }
+}
+public struct HitFigures {
+    public var cluster: UInt32
+    public var score: Double
+
+    public init(cluster: UInt32,score: Double) {
+        self.cluster = cluster
+        self.score = score
+    }
+
+    @inline(__always)
+    func intoFfiRepr() -> __swift_bridge__$HitFigures {
+        { let val = self; return __swift_bridge__$HitFigures(cluster: val.cluster, score: val.score); }()
+    }
+}
+extension __swift_bridge__$HitFigures {
+    @inline(__always)
+    func intoSwiftRepr() -> HitFigures {
+        { let val = self; return HitFigures(cluster: val.cluster, score: val.score); }()
+    }
+}
+extension __swift_bridge__$Option$HitFigures {
+    @inline(__always)
+    func intoSwiftRepr() -> Optional<HitFigures> {
+        if self.is_some {
+            return self.val.intoSwiftRepr()
+        } else {
+            return nil
+        }
+    }
+
+    @inline(__always)
+    static func fromSwiftRepr(_ val: Optional<HitFigures>) -> __swift_bridge__$Option$HitFigures {
+        if let v = val {
+            return __swift_bridge__$Option$HitFigures(is_some: true, val: v.intoFfiRepr())
+        } else {
+            return __swift_bridge__$Option$HitFigures(is_some: false, val: __swift_bridge__$HitFigures())
         }
     }
 }
@@ -2131,6 +2176,262 @@ extension Measurements: Vectorizable {
 }
 
 extension Measurements: @unchecked Sendable {}
+public class SearchModel: SearchModelRefMut {
+    var isOwned: Bool = true
+
+    public override init(ptr: UnsafeMutableRawPointer) {
+        super.init(ptr: ptr)
+    }
+
+    deinit {
+        if isOwned {
+            __swift_bridge__$SearchModel$_free(ptr)
+        }
+    }
+}
+public class SearchModelRefMut: SearchModelRef {
+    public override init(ptr: UnsafeMutableRawPointer) {
+        super.init(ptr: ptr)
+    }
+}
+public class SearchModelRef {
+    var ptr: UnsafeMutableRawPointer
+
+    public init(ptr: UnsafeMutableRawPointer) {
+        self.ptr = ptr
+    }
+}
+extension SearchModelRef {
+    public func name() -> RustString {
+        RustString(ptr: __swift_bridge__$SearchModel$name(ptr))
+    }
+}
+extension SearchModel: Vectorizable {
+    public static func vecOfSelfNew() -> UnsafeMutableRawPointer {
+        __swift_bridge__$Vec_SearchModel$new()
+    }
+
+    public static func vecOfSelfFree(vecPtr: UnsafeMutableRawPointer) {
+        __swift_bridge__$Vec_SearchModel$drop(vecPtr)
+    }
+
+    public static func vecOfSelfPush(vecPtr: UnsafeMutableRawPointer, value: SearchModel) {
+        __swift_bridge__$Vec_SearchModel$push(vecPtr, {value.isOwned = false; return value.ptr;}())
+    }
+
+    public static func vecOfSelfPop(vecPtr: UnsafeMutableRawPointer) -> Optional<Self> {
+        let pointer = __swift_bridge__$Vec_SearchModel$pop(vecPtr)
+        if pointer == nil {
+            return nil
+        } else {
+            return (SearchModel(ptr: pointer!) as! Self)
+        }
+    }
+
+    public static func vecOfSelfGet(vecPtr: UnsafeMutableRawPointer, index: UInt) -> Optional<SearchModelRef> {
+        let pointer = __swift_bridge__$Vec_SearchModel$get(vecPtr, index)
+        if pointer == nil {
+            return nil
+        } else {
+            return SearchModelRef(ptr: pointer!)
+        }
+    }
+
+    public static func vecOfSelfGetMut(vecPtr: UnsafeMutableRawPointer, index: UInt) -> Optional<SearchModelRefMut> {
+        let pointer = __swift_bridge__$Vec_SearchModel$get_mut(vecPtr, index)
+        if pointer == nil {
+            return nil
+        } else {
+            return SearchModelRefMut(ptr: pointer!)
+        }
+    }
+
+    public static func vecOfSelfAsPtr(vecPtr: UnsafeMutableRawPointer) -> UnsafePointer<SearchModelRef> {
+        UnsafePointer<SearchModelRef>(OpaquePointer(__swift_bridge__$Vec_SearchModel$as_ptr(vecPtr)))
+    }
+
+    public static func vecOfSelfLen(vecPtr: UnsafeMutableRawPointer) -> UInt {
+        __swift_bridge__$Vec_SearchModel$len(vecPtr)
+    }
+}
+
+extension SearchModel: @unchecked Sendable {}
+public class Searcher: SearcherRefMut {
+    var isOwned: Bool = true
+
+    public override init(ptr: UnsafeMutableRawPointer) {
+        super.init(ptr: ptr)
+    }
+
+    deinit {
+        if isOwned {
+            __swift_bridge__$Searcher$_free(ptr)
+        }
+    }
+}
+public class SearcherRefMut: SearcherRef {
+    public override init(ptr: UnsafeMutableRawPointer) {
+        super.init(ptr: ptr)
+    }
+}
+public class SearcherRef {
+    var ptr: UnsafeMutableRawPointer
+
+    public init(ptr: UnsafeMutableRawPointer) {
+        self.ptr = ptr
+    }
+}
+extension SearcherRef {
+    public func encode<GenericIntoRustString: IntoRustString>(_ renderer: RendererRef, _ cache: GenericIntoRustString, _ work: WorkRef) throws -> () {
+        try { let val = __swift_bridge__$Searcher$encode(ptr, renderer.ptr, { let rustString = cache.intoRustString(); rustString.isOwned = false; return rustString.ptr }(), work.ptr); if val != nil { throw Failure(ptr: val!) } else { return } }()
+    }
+
+    public func encoded_clusters() -> RustVec<UInt32> {
+        RustVec(ptr: __swift_bridge__$Searcher$encoded_clusters(ptr))
+    }
+
+    public func thumbnail(_ renderer: RendererRef, _ cluster: UInt32) throws -> Image {
+        try { let val = __swift_bridge__$Searcher$thumbnail(ptr, renderer.ptr, cluster); if val.is_ok { return Image(ptr: val.ok_or_err!) } else { throw Failure(ptr: val.ok_or_err!) } }()
+    }
+
+    public func search<GenericIntoRustString: IntoRustString>(_ text: GenericIntoRustString) throws -> Hits {
+        try { let val = __swift_bridge__$Searcher$search(ptr, { let rustString = text.intoRustString(); rustString.isOwned = false; return rustString.ptr }()); if val.is_ok { return Hits(ptr: val.ok_or_err!) } else { throw Failure(ptr: val.ok_or_err!) } }()
+    }
+}
+extension Searcher: Vectorizable {
+    public static func vecOfSelfNew() -> UnsafeMutableRawPointer {
+        __swift_bridge__$Vec_Searcher$new()
+    }
+
+    public static func vecOfSelfFree(vecPtr: UnsafeMutableRawPointer) {
+        __swift_bridge__$Vec_Searcher$drop(vecPtr)
+    }
+
+    public static func vecOfSelfPush(vecPtr: UnsafeMutableRawPointer, value: Searcher) {
+        __swift_bridge__$Vec_Searcher$push(vecPtr, {value.isOwned = false; return value.ptr;}())
+    }
+
+    public static func vecOfSelfPop(vecPtr: UnsafeMutableRawPointer) -> Optional<Self> {
+        let pointer = __swift_bridge__$Vec_Searcher$pop(vecPtr)
+        if pointer == nil {
+            return nil
+        } else {
+            return (Searcher(ptr: pointer!) as! Self)
+        }
+    }
+
+    public static func vecOfSelfGet(vecPtr: UnsafeMutableRawPointer, index: UInt) -> Optional<SearcherRef> {
+        let pointer = __swift_bridge__$Vec_Searcher$get(vecPtr, index)
+        if pointer == nil {
+            return nil
+        } else {
+            return SearcherRef(ptr: pointer!)
+        }
+    }
+
+    public static func vecOfSelfGetMut(vecPtr: UnsafeMutableRawPointer, index: UInt) -> Optional<SearcherRefMut> {
+        let pointer = __swift_bridge__$Vec_Searcher$get_mut(vecPtr, index)
+        if pointer == nil {
+            return nil
+        } else {
+            return SearcherRefMut(ptr: pointer!)
+        }
+    }
+
+    public static func vecOfSelfAsPtr(vecPtr: UnsafeMutableRawPointer) -> UnsafePointer<SearcherRef> {
+        UnsafePointer<SearcherRef>(OpaquePointer(__swift_bridge__$Vec_Searcher$as_ptr(vecPtr)))
+    }
+
+    public static func vecOfSelfLen(vecPtr: UnsafeMutableRawPointer) -> UInt {
+        __swift_bridge__$Vec_Searcher$len(vecPtr)
+    }
+}
+
+extension Searcher: @unchecked Sendable {}
+public class Hits: HitsRefMut {
+    var isOwned: Bool = true
+
+    public override init(ptr: UnsafeMutableRawPointer) {
+        super.init(ptr: ptr)
+    }
+
+    deinit {
+        if isOwned {
+            __swift_bridge__$Hits$_free(ptr)
+        }
+    }
+}
+public class HitsRefMut: HitsRef {
+    public override init(ptr: UnsafeMutableRawPointer) {
+        super.init(ptr: ptr)
+    }
+}
+public class HitsRef {
+    var ptr: UnsafeMutableRawPointer
+
+    public init(ptr: UnsafeMutableRawPointer) {
+        self.ptr = ptr
+    }
+}
+extension HitsRef {
+    public func count() -> UInt {
+        __swift_bridge__$Hits$count(ptr)
+    }
+
+    public func hit(_ index: UInt) -> HitFigures {
+        __swift_bridge__$Hits$hit(ptr, index).intoSwiftRepr()
+    }
+}
+extension Hits: Vectorizable {
+    public static func vecOfSelfNew() -> UnsafeMutableRawPointer {
+        __swift_bridge__$Vec_Hits$new()
+    }
+
+    public static func vecOfSelfFree(vecPtr: UnsafeMutableRawPointer) {
+        __swift_bridge__$Vec_Hits$drop(vecPtr)
+    }
+
+    public static func vecOfSelfPush(vecPtr: UnsafeMutableRawPointer, value: Hits) {
+        __swift_bridge__$Vec_Hits$push(vecPtr, {value.isOwned = false; return value.ptr;}())
+    }
+
+    public static func vecOfSelfPop(vecPtr: UnsafeMutableRawPointer) -> Optional<Self> {
+        let pointer = __swift_bridge__$Vec_Hits$pop(vecPtr)
+        if pointer == nil {
+            return nil
+        } else {
+            return (Hits(ptr: pointer!) as! Self)
+        }
+    }
+
+    public static func vecOfSelfGet(vecPtr: UnsafeMutableRawPointer, index: UInt) -> Optional<HitsRef> {
+        let pointer = __swift_bridge__$Vec_Hits$get(vecPtr, index)
+        if pointer == nil {
+            return nil
+        } else {
+            return HitsRef(ptr: pointer!)
+        }
+    }
+
+    public static func vecOfSelfGetMut(vecPtr: UnsafeMutableRawPointer, index: UInt) -> Optional<HitsRefMut> {
+        let pointer = __swift_bridge__$Vec_Hits$get_mut(vecPtr, index)
+        if pointer == nil {
+            return nil
+        } else {
+            return HitsRefMut(ptr: pointer!)
+        }
+    }
+
+    public static func vecOfSelfAsPtr(vecPtr: UnsafeMutableRawPointer) -> UnsafePointer<HitsRef> {
+        UnsafePointer<HitsRef>(OpaquePointer(__swift_bridge__$Vec_Hits$as_ptr(vecPtr)))
+    }
+
+    public static func vecOfSelfLen(vecPtr: UnsafeMutableRawPointer) -> UInt {
+        __swift_bridge__$Vec_Hits$len(vecPtr)
+    }
+}
+
+extension Hits: @unchecked Sendable {}
 public class SelfCheck: SelfCheckRefMut {
     var isOwned: Bool = true
 

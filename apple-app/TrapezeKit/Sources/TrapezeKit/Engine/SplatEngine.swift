@@ -6,7 +6,7 @@ internal import TrapezeBridge
 #endif
 
 /// The Rust core behind the contract of the app.
-public final class SplatEngine: Sendable {
+public final class SplatEngine: Engine {
   /// What may draw.
   public enum Backend: Sendable {
     /// The graphics device, or the CPU where there is none.
@@ -72,6 +72,12 @@ public final class SplatEngine: Sendable {
       }
       let trainer = try make_trainer(dataset, parameters, configuration.folder.path, work)
       return SplatTrainer(trainer, cameras: cameras)
+    }
+  }
+
+  public func makeSearcher(models: URL) -> ProgressStream<any SearchEngine> {
+    CoreQueue.concurrent.stream { work in
+      SceneSearcher(try open_search_model(models.path, work))
     }
   }
 

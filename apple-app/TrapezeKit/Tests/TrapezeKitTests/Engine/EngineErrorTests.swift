@@ -73,6 +73,17 @@ import TrapezeBridge
     #expect(refused?.code == .unwritableFile)
   }
 
+  @Test func missingModelsAreToldAsSuch() async throws {
+    let folder = try TemporaryFolder()
+    let missing = await failure { _ = try await Engines.cpu.makeSearcher(models: folder.url).result() }
+    #expect(missing?.code == .modelsMissing)
+  }
+
+  @Test func theCpuHasNoKernelsToCheck() async throws {
+    let refused = await failure { _ = try await Engines.cpu.selfCheck().result() }
+    #expect(refused?.code == .noDevice)
+  }
+
   @Test func everyCodeOfTheContractIsOneOfTheCore() {
     #expect(EngineError.Code.allCases.map(\.rawValue) == Array(1...12))
   }

@@ -43,7 +43,7 @@ import Testing
     let camera = try Golden.all()[0].camera
     for renderer in try await renderers(of: scene) {
       let everything = FrameRequest(camera: camera, time: 0.1)
-      let (x, y, hit) = try await #require(firstHit(renderer, everything))
+      let (x, y, hit) = try #require(try await firstHit(renderer, everything))
       let cluster = try #require(hit.cluster)
       #expect(scene.clusters.contains { $0.id == cluster })
       #expect(hit.splat < scene.summary.splatCount && hit.depth > 0)
