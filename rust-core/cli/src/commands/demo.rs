@@ -174,7 +174,7 @@ fn search_section(arguments: &Arguments) -> Result<String, CliError> {
     let sheet = arguments.out.join("search.png");
     let features = arguments.out.join("features.bin");
     let report = search(
-        Arc::new(load_scene(&arguments.scene)?),
+        &Arc::new(load_scene(&arguments.scene)?),
         &SearchArguments {
             path: &arguments.scene,
             phrases: &phrases,

@@ -51,17 +51,17 @@ struct VariantCheck {
 pub(super) fn check(scene: Option<Scene>) -> Result<GpuCheck, CliError> {
     let gpu = open_gpu()?;
     let report = self_check(&gpu);
-    let scene = scene.map(|scene| check_scene(&gpu, Arc::new(scene))).transpose()?;
+    let scene = scene.map(|scene| check_scene(&gpu, &Arc::new(scene))).transpose()?;
     Ok(GpuCheck { report, scene })
 }
 
 /// Renders a small frame of the scene with every variant of the kernels.
-fn check_scene(gpu: &Gpu, scene: Arc<Scene>) -> Result<SceneCheck, CliError> {
-    let size = SceneSize::of(&scene)?;
+fn check_scene(gpu: &Gpu, scene: &Arc<Scene>) -> Result<SceneCheck, CliError> {
+    let size = SceneSize::of(scene)?;
     let memory = MemoryPlan::new(&size, &RendererOptions::default(), PLANNED_SIZE, true);
-    let camera = camera_of(&scene);
+    let camera = camera_of(scene);
     let settings = FrameSettings { time: 0.37, ..FrameSettings::default() };
-    let exact = reference::render(&scene, &camera, &settings).to_frame();
+    let exact = reference::render(scene, &camera, &settings).to_frame();
     let mut variants = Vec::new();
     for (name, harmonics, precision) in [
         ("f32", HarmonicsStorage::Single, NetworkPrecision::Single),
@@ -73,7 +73,7 @@ fn check_scene(gpu: &Gpu, scene: Arc<Scene>) -> Result<SceneCheck, CliError> {
             continue;
         }
         let options = RendererOptions { harmonics, precision, ..RendererOptions::default() };
-        let mut renderer = Renderer::with_options(gpu, scene.clone(), options)?;
+        let mut renderer = Renderer::with_options(gpu, Arc::clone(scene), options)?;
         // The first frame compiles kernels.
         let frame = renderer.render(&camera, &settings)?;
         let start = Instant::now();

@@ -54,7 +54,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<(), CliError> {
     let scene = Arc::new(arguments.scene.load()?);
     let report = search(
-        scene,
+        &scene,
         &SearchArguments {
             path: &arguments.scene.scene,
             phrases: &arguments.text,

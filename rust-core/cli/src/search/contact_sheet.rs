@@ -4,10 +4,10 @@ use image::imageops::{self, FilterType};
 use image::{Rgb, RgbImage};
 use trapeze_query::Searcher;
 use trapeze_query::crops::CropRenderer;
+use trapeze_scene::Rgba8;
 
 use super::Found;
 use crate::error::CliError;
-use crate::output::Rgba8;
 
 /// Side of a picture in the sheet, pixels.
 const TILE: u32 = 160;

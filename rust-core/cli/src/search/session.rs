@@ -73,7 +73,7 @@ pub(crate) struct Merge {
 
 /// Searches a scene; clusters that were not encoded, or changed since, are encoded first.
 pub(crate) fn search(
-    scene: Arc<Scene>,
+    scene: &Arc<Scene>,
     arguments: &SearchArguments<'_>,
 ) -> Result<SearchReport, CliError> {
     if scene.clusters.is_none() {
@@ -85,9 +85,9 @@ pub(crate) fn search(
     }
     let model = OnnxModel::open(arguments.models).map_err(SearchError::from)?;
     let name = model.description().name.clone();
-    let mut searcher = Searcher::new(Arc::clone(&scene), Box::new(model), arguments.crops.clone())?;
+    let mut searcher = Searcher::new(Arc::clone(scene), Box::new(model), arguments.crops.clone())?;
     searcher.check(&phrases)?;
-    let mut renderer = CpuCropRenderer::new(Arc::clone(&scene));
+    let mut renderer = CpuCropRenderer::new(Arc::clone(scene));
 
     let start = Instant::now();
     let encoded = encode(&mut searcher, &mut renderer, arguments)?;

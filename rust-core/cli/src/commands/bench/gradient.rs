@@ -210,8 +210,11 @@ fn on_gpu(
     })
 }
 
+/// A stage's name, and its time among those of a pass.
+type Stage<T> = (&'static str, fn(&T) -> Duration);
+
 /// Median of each stage by its name, milliseconds.
-fn medians<T>(times: &[T], stages: &[(&str, fn(&T) -> Duration)]) -> Value {
+fn medians<T>(times: &[T], stages: &[Stage<T>]) -> Value {
     let median = |pick: &fn(&T) -> Duration| {
         Timing::of(&times.iter().map(pick).collect::<Vec<_>>()).median_ms
     };
