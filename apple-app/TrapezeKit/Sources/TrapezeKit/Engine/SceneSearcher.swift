@@ -3,10 +3,10 @@ internal import TrapezeBridge
 
 /// Text search with one pair of models.
 public final class SceneSearcher: SearchEngine {
-  private let model: SearchModel
+  private let model: TrapezeBridge.SearchModel
   public let modelName: String
 
-  init(_ model: SearchModel) {
+  init(_ model: TrapezeBridge.SearchModel) {
     self.model = model
     modelName = model.name().toString()
   }
