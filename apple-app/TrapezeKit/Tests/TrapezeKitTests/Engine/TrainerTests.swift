@@ -6,14 +6,14 @@ import Testing
 @Suite struct SplatTrainerTests {
   private func configuration(_ folder: TemporaryFolder, steps: Int) -> TrainingConfiguration {
     TrainingConfiguration(
-      steps: steps, maxSplats: 2_000, harmonicsDegree: 0, downscale: 4, holdout: 8,
+      steps: steps, maxSplats: 2_000, harmonicsDegree: 0, downscale: 2, holdout: 8,
       folder: folder.url.appending(path: "run"))
   }
 
   @Test func theDatasetIsDescribed() async throws {
     let summary = try await Engines.cpu.inspectDataset(at: Repository.sampleDataset)
     #expect(summary.format == "transforms.json")
-    #expect(summary.viewCount > 8 && summary.width == 400 && summary.height == 400)
+    #expect(summary.viewCount > 8 && summary.width == 200 && summary.height == 200)
   }
 
   @Test func aRunIsTrainedToItsEndAndMeasured() async throws {
