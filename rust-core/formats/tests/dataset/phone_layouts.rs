@@ -67,3 +67,44 @@ fn record3d_exports_number_their_poses_by_image() {
     let message = refusal(root.path(), &DatasetOptions::default());
     assert!(message.contains("image name: expected a number below 12"), "{message}");
 }
+
+#[test]
+fn captures_of_the_app_are_read_as_it_meant_them() {
+    // What the app's own test holds its writer to.
+    let app = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../apple-app/TrapezeKit/Tests");
+    let fixture = app.join("TrapezeKitTests/Fixtures/capture");
+    let root = tempfile::tempdir().unwrap();
+    for name in ["transforms.json", "points.ply"] {
+        std::fs::copy(fixture.join(name), root.path().join(name)).unwrap();
+    }
+    let text = std::fs::read_to_string(fixture.join("transforms.json")).unwrap();
+    let written: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let frames = written["frames"].as_array().unwrap();
+    for frame in frames {
+        let path = root.path().join(frame["file_path"].as_str().unwrap());
+        write_image(&path, 1920, 1440, 0);
+    }
+    let dataset = load_dataset(root.path(), &DatasetOptions::default()).unwrap();
+    assert_eq!(dataset.views.len(), frames.len());
+    let points = dataset.points.as_ref().unwrap();
+    assert_eq!(points.len(), 40);
+    for (view, frame) in dataset.views.iter().zip(frames) {
+        let camera = &view.camera;
+        assert_eq!([camera.width, camera.height], [1920, 1440]);
+        for (found, name) in
+            [(camera.fx, "fl_x"), (camera.fy, "fl_y"), (camera.cx, "cx"), (camera.cy, "cy")]
+        {
+            assert_eq!(found, frame[name].as_f64().unwrap(), "{name}");
+        }
+        let row = |r: usize| frame["transform_matrix"][r][3].as_f64().unwrap();
+        let centre = DVec3::new(row(0), row(1), row(2));
+        // Seven decimals were written.
+        assert!((camera.centre() - centre).length() < 1e-6);
+        // The camera went around the points and looked at them: they are in front of it.
+        for &[x, y, z] in &points.positions {
+            let point = DVec3::new(x.into(), y.into(), z.into()) + dataset.origin;
+            let seen = camera.world_to_camera * point.extend(1.0);
+            assert!(seen.z > 0.0, "{seen}");
+        }
+    }
+}

@@ -75,7 +75,9 @@ import TrapezeBridge
 
   @Test func missingModelsAreToldAsSuch() async throws {
     let folder = try TemporaryFolder()
-    let missing = await failure { _ = try await Engines.cpu.makeSearcher(models: folder.url).result() }
+    let missing = await failure {
+      _ = try await Engines.cpu.makeSearcher(models: folder.url).result()
+    }
     #expect(missing?.code == .modelsMissing)
   }
 
