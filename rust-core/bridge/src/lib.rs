@@ -4,11 +4,11 @@
 //! algorithms. Three rules keep the border safe:
 //!
 //! * **No panic crosses it.** Every entry runs inside `failure::guarded`; a panic becomes a failure of
-//!   kind [`Code::InternalFault`], and what it left half changed is not used again.
+//!   kind `Code::InternalFault`, and what it left half changed is not used again.
 //! * **Everything is `Send + Sync`.** An object may be used from any thread; what changes is behind a
 //!   mutex of its own, and two objects share none.
-//! * **What takes long can be stopped.** It is given a [`Work`], tells it how far it is, and ends with
-//!   [`Code::Cancelled`] soon after the other side has cancelled.
+//! * **What takes long can be stopped.** It is given a `Work`, tells it how far it is, and ends with
+//!   `Code::Cancelled` soon after the other side has cancelled.
 
 // Arguments cross the border by value, whether their bodies keep them or not.
 #![allow(clippy::needless_pass_by_value)]
