@@ -35,6 +35,7 @@ pub mod optimizer;
 mod parameters;
 pub mod random;
 mod reference_backend;
+mod report_queue;
 pub mod schedule;
 mod state;
 pub mod trainer;

@@ -1,6 +1,6 @@
 //! Training on the f64 reference: slow, and the truth that a fast backend is held to.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use fearless_simd::Level;
@@ -9,11 +9,12 @@ use trapeze_scene::{Camera, Frame, FrameSettings, Scene, Splats};
 
 use crate::TrainingState;
 use crate::backend::{BackendError, StepReport, TrainingBackend, TrainingView};
-use crate::densify::{grow, relocate_dead};
+use crate::densify::densify;
 use crate::loss::reference::reference_loss;
 use crate::loss::{LossValue, TargetImage};
 use crate::optimizer::apply_update;
 use crate::parameters::zeros_like;
+use crate::report_queue::ReportQueue;
 use crate::schedule::{DensifyPlan, StepPlan};
 
 /// Renders, compares and differentiates in double precision, pixel by pixel. Parameters and their
@@ -22,7 +23,7 @@ use crate::schedule::{DensifyPlan, StepPlan};
 pub struct ReferenceBackend {
     state: TrainingState,
     targets: BTreeMap<u32, Arc<TargetImage>>,
-    reports: VecDeque<StepReport>,
+    reports: ReportQueue,
 }
 
 impl ReferenceBackend {
@@ -99,13 +100,12 @@ impl TrainingBackend for ReferenceBackend {
         self.state.raise_sh_degree(plan.sh_degree);
         let (loss, mut by_splats, visible) = self.differentiate(plan, view, &target)?;
         let not_finite = apply_update(Level::baseline(), &mut self.state, &mut by_splats, plan);
-        self.reports.push_back(StepReport { step: plan.step, loss, not_finite, visible });
+        self.reports.push(StepReport { step: plan.step, loss, not_finite, visible });
         Ok(())
     }
 
     fn densify(&mut self, plan: &DensifyPlan) -> Result<(), BackendError> {
-        relocate_dead(&mut self.state, plan.dead_opacity, plan.seed);
-        grow(&mut self.state, plan.count, plan.dead_opacity, plan.seed);
+        densify(&mut self.state, plan);
         Ok(())
     }
 
@@ -114,8 +114,7 @@ impl TrainingBackend for ReferenceBackend {
     }
 
     fn reports(&mut self, step: u32) -> Result<Vec<StepReport>, BackendError> {
-        let due = self.reports.partition_point(|report| report.step <= step);
-        Ok(self.reports.drain(..due).collect())
+        Ok(self.reports.take_up_to(step))
     }
 
     fn render(&mut self, camera: &Camera, settings: &FrameSettings) -> Result<Frame, BackendError> {

@@ -2,7 +2,6 @@
 
 mod targets;
 
-use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -12,9 +11,10 @@ use trapeze_scene::{Camera, Frame, FrameSettings, Scene, Splats};
 
 use crate::TrainingState;
 use crate::backend::{BackendError, StepReport, TrainingBackend, TrainingView};
-use crate::densify::{grow, relocate_dead};
+use crate::densify::densify;
 use crate::loss::{ImageLoss, LossValue, TargetImage};
 use crate::optimizer::apply_update;
+use crate::report_queue::ReportQueue;
 use crate::schedule::{DensifyPlan, StepPlan};
 use targets::ResidentTargets;
 
@@ -62,7 +62,7 @@ pub struct CpuBackend {
     by_image: Vec<[f32; 4]>,
     by_splats: Splats,
     targets: ResidentTargets,
-    reports: VecDeque<StepReport>,
+    reports: ReportQueue,
     times: CpuStepTimes,
 }
 
@@ -81,7 +81,7 @@ impl CpuBackend {
             by_image: Vec::new(),
             by_splats: Splats::default(),
             targets: ResidentTargets::new(target_budget),
-            reports: VecDeque::new(),
+            reports: ReportQueue::default(),
             times: CpuStepTimes::default(),
         }
     }
@@ -194,13 +194,12 @@ impl TrainingBackend for CpuBackend {
         let not_finite =
             apply_update(self.options.level, &mut self.state, &mut self.by_splats, plan);
         self.times.update += start.elapsed();
-        self.reports.push_back(StepReport { step: plan.step, loss, not_finite, visible });
+        self.reports.push(StepReport { step: plan.step, loss, not_finite, visible });
         Ok(())
     }
 
     fn densify(&mut self, plan: &DensifyPlan) -> Result<(), BackendError> {
-        relocate_dead(&mut self.state, plan.dead_opacity, plan.seed);
-        grow(&mut self.state, plan.count, plan.dead_opacity, plan.seed);
+        densify(&mut self.state, plan);
         Ok(())
     }
 
@@ -209,8 +208,7 @@ impl TrainingBackend for CpuBackend {
     }
 
     fn reports(&mut self, step: u32) -> Result<Vec<StepReport>, BackendError> {
-        let due = self.reports.partition_point(|report| report.step <= step);
-        Ok(self.reports.drain(..due).collect())
+        Ok(self.reports.take_up_to(step))
     }
 
     fn render(&mut self, camera: &Camera, settings: &FrameSettings) -> Result<Frame, BackendError> {

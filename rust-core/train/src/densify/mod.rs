@@ -15,3 +15,12 @@ pub use noise::PositionNoise;
 pub(crate) use relocation::{dead_logit, lowest_logit};
 pub use relocation::{grow, grown_count, relocate_dead};
 pub(crate) use sampling::{OpacityUnits, weight_bits, weight_shift};
+
+use crate::TrainingState;
+use crate::schedule::DensifyPlan;
+
+/// Carries out a plan: the dead move, then the set grows to the plan's count.
+pub fn densify(state: &mut TrainingState, plan: &DensifyPlan) {
+    relocate_dead(state, plan.dead_opacity, plan.seed);
+    grow(state, plan.count, plan.dead_opacity, plan.seed);
+}

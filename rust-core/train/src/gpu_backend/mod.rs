@@ -28,7 +28,6 @@ mod tests;
 mod timing;
 mod update_stage;
 
-use std::collections::VecDeque;
 use std::sync::Arc;
 
 use trapeze_gpu::{
@@ -39,6 +38,7 @@ use trapeze_scene::{Camera, Frame, FrameSettings};
 use crate::TrainingState;
 use crate::backend::{BackendError, StepReport, TrainingBackend, TrainingView};
 use crate::loss::TargetImage;
+use crate::report_queue::ReportQueue;
 use crate::schedule::{DensifyPlan, StepPlan};
 use device::{DeviceSide, Run};
 use loss_stage::record_loss;
@@ -87,7 +87,7 @@ pub struct GpuBackend {
     targets: ResidentTargets,
     log: OrderLog,
     /// Reports that have arrived and were not asked for yet.
-    ready: VecDeque<StepReport>,
+    ready: ReportQueue,
     /// Steps taken.
     step: u32,
     waits: u64,
@@ -106,7 +106,7 @@ impl GpuBackend {
             run: None,
             targets: ResidentTargets::new(options.target_budget),
             log: OrderLog::default(),
-            ready: VecDeque::new(),
+            ready: ReportQueue::default(),
             step: 0,
             waits: 0,
             halts: 0,
@@ -263,7 +263,7 @@ impl GpuBackend {
     fn make_ready(&mut self, report: &RawReport) {
         let Some(order) = self.log.pop_step() else { return };
         let [width, height] = order.target.size.map(|size| size as usize);
-        self.ready.push_back(StepReport {
+        self.ready.push(StepReport {
             step: order.plan.step,
             loss: report.loss(width * height, order.plan.ssim_weight),
             not_finite: report.not_finite,
@@ -402,8 +402,7 @@ impl TrainingBackend for GpuBackend {
     fn reports(&mut self, step: u32) -> Result<Vec<StepReport>, BackendError> {
         self.check_device()?;
         self.wait_for(step)?;
-        let due = self.ready.partition_point(|report| report.step <= step);
-        Ok(self.ready.drain(..due).collect())
+        Ok(self.ready.take_up_to(step))
     }
 
     fn render(&mut self, camera: &Camera, settings: &FrameSettings) -> Result<Frame, BackendError> {

@@ -138,18 +138,7 @@ fn exploding_rates_recover_or_stop_with_the_last_good_state() {
     let dataset = dataset(10);
     for factor in [1e3, 1e7] {
         let mut config = config(100);
-        let rates = &mut config.rates;
-        for rate in [
-            &mut rates.positions_start,
-            &mut rates.positions_end,
-            &mut rates.log_scales,
-            &mut rates.rotations,
-            &mut rates.opacity_logits,
-            &mut rates.sh_dc,
-            &mut rates.sh_rest,
-        ] {
-            *rate *= factor;
-        }
+        multiply_rates(&mut config, factor);
         let mut rollbacks = 0;
         let mut trainer = Trainer::start(&dataset, config, backend(&gpu), options(None)).unwrap();
         let result = trainer.advance(u32::MAX, &mut |event| {

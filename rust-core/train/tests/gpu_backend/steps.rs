@@ -199,10 +199,10 @@ fn what_does_not_fit_is_refused_with_need_and_have() {
     let BackendError::OutOfMemory { needed, available, .. } = error else { panic!("{error}") };
     assert_eq!((needed, available), (plan.total(), plan.total() - 1));
     backend.load(&TrainingState::new(splats(10)), 999).unwrap();
-    let error = backend.admit_target(0, photograph(0, (20, 20))).unwrap_err();
+    let error = backend.admit_target(0, Arc::new(photograph(0, (20, 20)))).unwrap_err();
     assert!(matches!(error, BackendError::OutOfMemory { needed: 1600, .. }), "{error}");
     for id in 0..3 {
-        backend.admit_target(id, photograph(id, (10, 10))).unwrap();
+        backend.admit_target(id, Arc::new(photograph(id, (10, 10)))).unwrap();
     }
     assert_eq!([0, 1, 2].map(|id| backend.has_target(id)), [false, true, true]);
     let view = TrainingView { id: 2, camera: camera(2, (11, 10)), time: 0.0 };

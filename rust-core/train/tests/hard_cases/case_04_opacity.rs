@@ -10,7 +10,7 @@ fn extreme_opacities_train_and_leave_every_parameter_finite() {
     for (i, logit) in [1e4, -1e4, 40.0, -40.0].into_iter().enumerate() {
         splats.opacity_logits[10 * i] = logit;
     }
-    let (mut backend, view) = loaded(splats, camera(40, 30), photograph(40, 30));
+    let (mut backend, view) = loaded(splats, camera(40, 30), photograph(0, (40, 30)));
     let reports = take_steps(&mut backend, &view, &TrainingConfig::growing(20, 300));
     assert!(reports.iter().all(StepReport::is_sound), "{reports:?}");
     assert!(reports[19].loss.total < reports[0].loss.total);
@@ -24,7 +24,7 @@ fn what_is_not_finite_stays_where_it_is_is_counted_and_is_moved_by_relocation() 
     for (i, logit) in poison.into_iter().enumerate() {
         splats.opacity_logits[10 * i] = logit;
     }
-    let (mut backend, view) = loaded(splats, camera(40, 30), photograph(40, 30));
+    let (mut backend, view) = loaded(splats, camera(40, 30), photograph(0, (40, 30)));
     let reports = take_steps(&mut backend, &view, &TrainingConfig::fixed(20));
     // The loss is finite, and only the three logits were skipped.
     assert!(reports.iter().all(|r| r.loss.total.is_finite() && r.not_finite <= 3), "{reports:?}");
@@ -47,7 +47,7 @@ fn ten_thousand_splats_on_one_pixel_train() {
             *position = [0.0, 0.0, i as f32 * 1e-4];
         }
         splats.opacity_logits.fill(logit);
-        let (mut backend, view) = loaded(splats, camera(15, 11), photograph(15, 11));
+        let (mut backend, view) = loaded(splats, camera(15, 11), photograph(0, (15, 11)));
         let reports = take_steps(&mut backend, &view, &TrainingConfig::fixed(5));
         assert!(reports.iter().all(StepReport::is_sound), "{logit}: {reports:?}");
         assert!(is_finite(&backend.state().unwrap().splats));

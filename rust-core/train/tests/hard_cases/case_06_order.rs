@@ -17,7 +17,8 @@ fn equal_splats_train_to_the_same_bits_on_any_number_of_threads() {
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let (mut backend, view) = loaded(splats.clone(), camera(70, 50), photograph(70, 50));
+            let (mut backend, view) =
+                loaded(splats.clone(), camera(70, 50), photograph(0, (70, 50)));
             let reports = take_steps(&mut backend, &view, &TrainingConfig::growing(25, 600));
             (backend.state().unwrap(), reports)
         })

@@ -11,7 +11,7 @@ fn constant_and_one_pixel_wide_photographs_train() {
     for (width, height) in [(1, 1), (1, 40), (40, 1), (2, 3), (24, 18)] {
         let pixels = vec![128; (width * height * 3) as usize];
         let constant = TargetImage::new(width, height, Channels::Rgb, pixels).unwrap();
-        for target in [constant, photograph(width, height)] {
+        for target in [constant, photograph(0, (width, height))] {
             let (mut backend, view) = loaded(splats(100), camera(width, height), target);
             let reports = take_steps(&mut backend, &view, &TrainingConfig::growing(10, 100));
             assert!(reports.iter().all(StepReport::is_sound), "{width} x {height}: {reports:?}");
@@ -30,7 +30,7 @@ fn a_view_without_a_visible_splat_changes_nothing() {
         0.7,
         (20, 15),
     );
-    let (mut backend, view) = loaded(before.clone(), away, photograph(20, 15));
+    let (mut backend, view) = loaded(before.clone(), away, photograph(0, (20, 15)));
     let reports = take_steps(&mut backend, &view, &TrainingConfig::fixed(5));
     assert!(reports.iter().all(|report| report.is_sound() && report.visible == 0));
     assert_eq!(backend.state().unwrap().splats, before);
@@ -66,18 +66,7 @@ fn run_with_rates(factor: f64) -> Run {
     let mut config = TrainingConfig::growing(200, 400);
     config.initial.random_count = 300;
     config.checkpoint_interval = 50;
-    let rates = &mut config.rates;
-    for rate in [
-        &mut rates.positions_start,
-        &mut rates.positions_end,
-        &mut rates.log_scales,
-        &mut rates.rotations,
-        &mut rates.opacity_logits,
-        &mut rates.sh_dc,
-        &mut rates.sh_rest,
-    ] {
-        *rate *= factor;
-    }
+    multiply_rates(&mut config, factor);
     let (mut rollbacks, mut losses) = (0, Vec::new());
     let options = TrainerOptions { report_interval: 20, ..TrainerOptions::default() };
     let mut trainer = Trainer::start(&dataset, config, CpuBackend::default(), options).unwrap();

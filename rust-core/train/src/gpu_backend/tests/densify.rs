@@ -8,7 +8,7 @@ use super::super::kernels::TrainingKernels;
 use super::super::splats::ResidentSplats;
 use super::device;
 use crate::TrainingState;
-use crate::densify::{grow, relocate_dead};
+use crate::densify::densify;
 use crate::parameters::ParameterGroup;
 use crate::parameters::tests::random_splats;
 use crate::schedule::DensifyPlan;
@@ -27,8 +27,7 @@ fn densified(gpu: &Gpu, state: &TrainingState, plan: &DensifyPlan, halted: u32) 
 
 fn densified_on_cpu(state: &TrainingState, plan: &DensifyPlan) -> TrainingState {
     let mut state = state.clone();
-    relocate_dead(&mut state, plan.dead_opacity, plan.seed);
-    grow(&mut state, plan.count, plan.dead_opacity, plan.seed);
+    densify(&mut state, plan);
     state
 }
 

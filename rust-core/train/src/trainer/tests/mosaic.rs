@@ -10,9 +10,10 @@ use trapeze_scene::{Camera, Frame, FrameSettings, SH_C0};
 
 use crate::TrainingState;
 use crate::backend::{BackendError, StepReport, TrainingBackend, TrainingView};
-use crate::densify::{grow, relocate_dead};
+use crate::densify::densify;
 use crate::loss::{ImageLoss, TargetImage};
 use crate::optimizer::apply_update;
+use crate::report_queue::ReportQueue;
 use crate::schedule::{DensifyPlan, StepPlan};
 use crate::zeros_like;
 
@@ -36,7 +37,7 @@ pub(super) type Failures = Arc<Mutex<BTreeMap<u32, Failure>>>;
 pub(super) struct Mosaic {
     pub(super) state: TrainingState,
     pub(super) targets: BTreeMap<u32, Arc<TargetImage>>,
-    pub(super) reports: Vec<StepReport>,
+    pub(super) reports: ReportQueue,
     pub(super) loss: ImageLoss,
     pub(super) failures: Failures,
     /// Views that were shown, in order.
@@ -140,8 +141,7 @@ impl TrainingBackend for Mosaic {
 
     fn densify(&mut self, plan: &DensifyPlan) -> Result<(), BackendError> {
         assert!(plan.count <= self.capacity, "{} of {}", plan.count, self.capacity);
-        relocate_dead(&mut self.state, plan.dead_opacity, plan.seed);
-        grow(&mut self.state, plan.count, plan.dead_opacity, plan.seed);
+        densify(&mut self.state, plan);
         Ok(())
     }
 
@@ -150,8 +150,7 @@ impl TrainingBackend for Mosaic {
     }
 
     fn reports(&mut self, step: u32) -> Result<Vec<StepReport>, BackendError> {
-        let ready = self.reports.partition_point(|report| report.step <= step);
-        Ok(self.reports.drain(..ready).collect())
+        Ok(self.reports.take_up_to(step))
     }
 
     fn render(&mut self, camera: &Camera, _: &FrameSettings) -> Result<Frame, BackendError> {
