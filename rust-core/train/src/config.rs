@@ -71,6 +71,36 @@ impl Default for Densification {
     }
 }
 
+/// How the network of a scene that moves is trained.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct DeformationTraining {
+    /// Steps before the first of the network: the splats find their places as if nothing moved.
+    pub warm_up: u32,
+    /// Learning rate of the network at its first step.
+    pub rate_start: f64,
+    /// And at its last; in between it falls exponentially.
+    pub rate_end: f64,
+    /// Standard deviation of the noise of the time at the network's first step, in the time of the
+    /// scene (0 to 1).
+    pub time_noise: f64,
+    /// Steps of the network after which that noise has faded, linearly.
+    pub noisy_steps: u32,
+}
+
+impl Default for DeformationTraining {
+    /// Yang et al. 2023 for synthetic scenes, whose times are exact: no noise.
+    fn default() -> Self {
+        Self {
+            warm_up: 3_000,
+            rate_start: 8e-4,
+            rate_end: 1.6e-6,
+            time_noise: 0.0,
+            noisy_steps: 20_000,
+        }
+    }
+}
+
 /// How the number of splats and the SH degree are found where nobody states them: see
 /// [`trainer::search`](crate::trainer::search).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -119,6 +149,8 @@ pub struct TrainingConfig {
     pub regularisers: Regularisers,
     /// How the set of splats changes; `None` keeps the initial set.
     pub densification: Option<Densification>,
+    /// How the network that moves the splats is trained; `None` trains a static scene.
+    pub deformation: Option<DeformationTraining>,
     /// How the first splats look.
     pub initial: InitialSplats,
     /// Finds the number of splats and the SH degree, up to `densification.max_splats` and
@@ -150,6 +182,7 @@ impl TrainingConfig {
             adam: AdamConstants::default(),
             regularisers: Regularisers::default(),
             densification: None,
+            deformation: None,
             initial: InitialSplats::default(),
             search: None,
             checkpoint_interval: 500,
@@ -238,7 +271,19 @@ impl TrainingConfig {
         if let Some(search) = &self.search {
             search.validate()?;
         }
+        if let Some(deformation) = &self.deformation {
+            deformation.validate()?;
+        }
         self.densification.as_ref().map_or(Ok(()), Densification::validate)
+    }
+}
+
+impl DeformationTraining {
+    fn validate(&self) -> Result<(), ConfigError> {
+        let least = f64::from(f32::MIN_POSITIVE);
+        in_range("deformation.rate_start", self.rate_start, least, 1e6)?;
+        in_range("deformation.rate_end", self.rate_end, least, 1e6)?;
+        in_range("deformation.time_noise", self.time_noise, 0.0, 1.0)
     }
 }
 

@@ -29,6 +29,20 @@ pub struct StepPlan {
     pub regularisers: Regularisers,
     /// Noise of the positions after the update.
     pub noise: Option<PositionNoise>,
+    /// The step of the deformation network; `None` in a static scene and while a deformable one
+    /// warms up: then no network is evaluated, and none is trained.
+    pub network: Option<NetworkStep>,
+}
+
+/// What a step does with the deformation network.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NetworkStep {
+    /// Added to the time of the view: noise against times that are seen too exactly.
+    pub time_offset: f32,
+    /// Learning rate of all weights and biases.
+    pub rate: f64,
+    /// Adam's constants, whose steps count from the network's first one.
+    pub adam: AdamStep,
 }
 
 /// A change of the set of splats between two steps.
@@ -57,7 +71,25 @@ impl TrainingConfig {
             adam: self.adam.at_step(step.saturating_add(1)),
             regularisers: self.regularisers,
             noise: self.densification.map(|densification| densification.noise),
+            network: self.network_step(step, rate_factor),
         }
+    }
+
+    /// What step `step` does with the deformation network, if anything.
+    fn network_step(&self, step: u32, rate_factor: f64) -> Option<NetworkStep> {
+        let deformation = self.deformation.as_ref()?;
+        let trained = step.checked_sub(deformation.warm_up)?;
+        let steps = self.steps.saturating_sub(deformation.warm_up).max(1);
+        let progress = f64::from(trained.min(steps)) / f64::from(steps);
+        let decay = (deformation.rate_end / deformation.rate_start).powf(progress);
+        let annealed =
+            (1.0 - f64::from(trained) / f64::from(deformation.noisy_steps.max(1))).max(0.0);
+        let [normal, ..] = Stream::new(self.seed, Purpose::TimeNoise, step).normals(0);
+        Some(NetworkStep {
+            time_offset: (deformation.time_noise * annealed) as f32 * normal,
+            rate: rate_factor * deformation.rate_start * decay,
+            adam: self.adam.at_step(trained.saturating_add(1)),
+        })
     }
 
     /// The change of the set after `step` steps have been taken with `splats` splats, if any.
@@ -100,6 +132,7 @@ impl Densification {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::DeformationTraining;
 
     #[test]
     fn the_sh_degree_grows_one_band_at_a_time() {
@@ -133,6 +166,48 @@ mod tests {
         assert_eq!(config.background_at(3), config.background_at(3));
         assert_ne!(config.background_at(3), config.background_at(4));
         assert!(config.background_at(3).iter().all(|c| (0.0..1.0).contains(c)));
+    }
+
+    #[test]
+    fn the_network_rests_while_warming_up_and_then_learns_at_a_falling_rate() {
+        let deformation = DeformationTraining { warm_up: 100, ..DeformationTraining::default() };
+        let config =
+            TrainingConfig { deformation: Some(deformation), ..TrainingConfig::fixed(1_100) };
+        assert_eq!(config.step_plan(99, 1.0, 1.0).network, None);
+        let at = |step| config.step_plan(step, 1.0, 1.0).network.unwrap();
+        assert_eq!((at(100).rate, at(100).adam), (deformation.rate_start, config.adam.at_step(1)));
+        assert!((at(1_100).rate / deformation.rate_end - 1.0).abs() < 1e-12);
+        let middle = (deformation.rate_start * deformation.rate_end).sqrt();
+        assert!((at(600).rate / middle - 1.0).abs() < 1e-12);
+        let slower = config.step_plan(600, 1.0, 0.5).network.unwrap();
+        assert_eq!(slower.rate, 0.5 * at(600).rate);
+        assert_eq!(TrainingConfig::fixed(10).step_plan(5, 1.0, 1.0).network, None);
+    }
+
+    #[test]
+    fn the_noise_of_time_is_reproducible_and_fades() {
+        let noisy = |time_noise| DeformationTraining {
+            warm_up: 10,
+            time_noise,
+            noisy_steps: 1_000,
+            ..DeformationTraining::default()
+        };
+        let offsets = |time_noise| {
+            let deformation = Some(noisy(time_noise));
+            let config = TrainingConfig { deformation, ..TrainingConfig::fixed(2_000) };
+            move |step| config.step_plan(step, 1.0, 1.0).network.unwrap().time_offset
+        };
+        let at = offsets(0.01);
+        assert_eq!(at(20).to_bits(), at(20).to_bits());
+        let mean = |range: std::ops::Range<u32>| {
+            let n = f64::from(range.len() as u32);
+            range.map(|step| f64::from(at(step).abs())).sum::<f64>() / n
+        };
+        // The mean of |normal| is √(2/π) = 0.80, its deviation over 100 draws 0.06.
+        assert!((0.5..1.1).contains(&(mean(10..110) / 0.0095)));
+        assert!((0.5..1.1).contains(&(mean(810..910) / 0.0015)));
+        assert_eq!(mean(1_010..1_100), 0.0);
+        assert_eq!(offsets(0.0)(20), 0.0);
     }
 
     #[test]

@@ -2,9 +2,10 @@
 
 use trapeze_scene::{SceneError, ShDegree, Splats};
 
+use crate::TrainedNetwork;
 use crate::parameters::zeros_like;
 
-/// The splats under training with the state of their optimiser.
+/// The splats under training, and the network that moves them, with the state of their optimiser.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrainingState {
     /// Steps that have been taken.
@@ -15,6 +16,8 @@ pub struct TrainingState {
     pub first_moments: Splats,
     /// Adam's running mean of the squared gradient, per parameter.
     pub second_moments: Splats,
+    /// What moves the splats in time; `None` in a static scene.
+    pub network: Option<TrainedNetwork>,
 }
 
 impl TrainingState {
@@ -22,7 +25,7 @@ impl TrainingState {
     #[must_use]
     pub fn new(splats: Splats) -> Self {
         let zeros = zeros_like(&splats);
-        Self { step: 0, splats, first_moments: zeros.clone(), second_moments: zeros }
+        Self { step: 0, splats, first_moments: zeros.clone(), second_moments: zeros, network: None }
     }
 
     /// Adds the SH bands up to `degree`, zero and at rest. A lower degree changes nothing.
@@ -49,6 +52,18 @@ impl TrainingState {
             let (expected, found) = (self.splats.sh_rest.len(), moments.sh_rest.len());
             if found != expected {
                 return Err(SceneError::Length { field: "moments of sh_rest", expected, found });
+            }
+        }
+        let Some(trained) = &self.network else { return Ok(()) };
+        let expected = trained.network.parameter_count();
+        for moments in [&trained.first_moments, &trained.second_moments] {
+            let found = moments.len();
+            if found != expected {
+                return Err(SceneError::Length {
+                    field: "moments of the network",
+                    expected,
+                    found,
+                });
             }
         }
         Ok(())

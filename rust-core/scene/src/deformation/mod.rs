@@ -118,6 +118,17 @@ impl DeformationNetwork {
         time.chain(&self.hidden).chain(position).chain([&self.rotation_head, &self.scale_head])
     }
 
+    /// [`layers`](Self::layers), to be changed; the lengths must stay.
+    pub fn layers_mut(&mut self) -> impl Iterator<Item = &mut Linear> {
+        let time = self.time_network.iter_mut().flat_map(|net| [&mut net.hidden, &mut net.output]);
+        let position: Vec<&mut Linear> = match &mut self.position_head {
+            PositionHead::Translation(warp) => vec![warp],
+            PositionHead::Screw { w, v } => vec![w, v],
+        };
+        let heads = [&mut self.rotation_head, &mut self.scale_head];
+        time.chain(&mut self.hidden).chain(position).chain(heads)
+    }
+
     /// Number of weights and biases.
     #[must_use]
     pub fn parameter_count(&self) -> usize {

@@ -61,6 +61,7 @@ impl ResidentSplats {
             splats: self.parameters.read(gpu)?,
             first_moments: self.first_moments.read(gpu)?,
             second_moments: self.second_moments.read(gpu)?,
+            network: None,
         })
     }
 

@@ -23,6 +23,9 @@ pub enum Purpose {
     Initialisation = 6,
     /// Noise of the time that the deformation network sees; the index is 0.
     TimeNoise = 7,
+    /// First weights of the deformation network; the step is the layer, the index a quarter of the
+    /// place of the weight.
+    NetworkInitialisation = 8,
 }
 
 /// Random words addressed by (seed, purpose, step, index): what is drawn depends on the address

@@ -118,6 +118,7 @@ fn a_state_comes_back_as_it_was_loaded() {
             splats: part(0),
             first_moments: part(1),
             second_moments: part(2),
+            network: None,
         };
         backend.load(&state, 60).unwrap();
         assert_eq!(backend.state().unwrap(), state);
