@@ -15,6 +15,10 @@
 //! # Ok(by_splats)
 //! # }
 //! ```
+//!
+//! In a scene that moves, [`DifferentiableRenderer::backward_with_network`] also gives the gradient by
+//! the weights of the network, in the order of `weights.bin`: a loss on the frame at any time trains
+//! splats and network together.
 
 use std::f32::consts::LOG2_E;
 use std::time::{Duration, Instant};
@@ -22,11 +26,16 @@ use std::time::{Duration, Instant};
 use fearless_simd::{Simd, dispatch};
 use fearless_simd_macros::simd;
 use rayon::prelude::*;
-use trapeze_scene::{Camera, ColorSource, Frame, FrameSettings, Scene, SceneError, Splats};
+use trapeze_scene::{
+    Camera, ColorSource, DeformationNetwork, Frame, FrameSettings, Scene, SceneError, Splats,
+    is_dynamic,
+};
 
 use crate::bin::BandLists;
 use crate::deform::{DeformationOptions, DeformationStage, Deformed};
-use crate::deform_backward::{PoseRule, unit_backward};
+use crate::deform_backward::{
+    MovedSplats, OutputGradient, PoseRule, network_backward, unit_backward,
+};
 use crate::gradient::{GradientChunk, ImageGradient, PoseGradients, gradient_chunks, reset_like};
 use crate::project::{ProjectedSplat, ProjectedSplats, ProjectionStage, project};
 use crate::project_backward::{BackwardView, SplatInput, project_backward};
@@ -51,6 +60,7 @@ pub struct DifferentiableRenderer {
     bands: BandLists,
     frame: Frame,
     memory: BackwardMemory,
+    by_outputs: Vec<OutputGradient>,
     last: Option<LastFrame>,
     times: PassTimes,
 }
@@ -64,6 +74,8 @@ pub struct PassTimes {
     pub rasterize_backward: Duration,
     /// From these to the stored parameters.
     pub project_backward: Duration,
+    /// Through the deformation network to its weights.
+    pub deform_backward: Duration,
 }
 
 /// How the frame that is saved came about.
@@ -71,6 +83,8 @@ pub struct PassTimes {
 struct LastFrame {
     view: BackwardView,
     pose_rule: PoseRule,
+    time: f32,
+    static_threshold: Option<f32>,
     splats: usize,
 }
 
@@ -91,6 +105,7 @@ impl DifferentiableRenderer {
             bands: BandLists::default(),
             frame: Frame::default(),
             memory: BackwardMemory::default(),
+            by_outputs: Vec::new(),
             last: None,
             times: PassTimes::default(),
         }
@@ -158,7 +173,13 @@ impl DifferentiableRenderer {
             ColorSource::Clusters | ColorSource::Motion => None,
         };
         let view = BackwardView::new(&relative, degree);
-        self.last = Some(LastFrame { view, pose_rule, splats: scene.len() });
+        self.last = Some(LastFrame {
+            view,
+            pose_rule,
+            time: settings.time,
+            static_threshold: settings.static_threshold,
+            splats: scene.len(),
+        });
         Ok(&self.frame)
     }
 
@@ -169,7 +190,8 @@ impl DifferentiableRenderer {
     /// The derivative is that of the image away from its cut-offs (α = 1/255, T = 10⁻⁴, the order
     /// of splats), which are taken as constant; at a clamp (α = 0.99, a colour of 0, the floor of a
     /// deformed scale) it is zero. In scenes with a deformation network the network's outputs are
-    /// taken as given. The result does not depend on the number of threads.
+    /// taken as given; [`backward_with_network`](Self::backward_with_network) differentiates by its
+    /// weights too. The result does not depend on the number of threads.
     ///
     /// # Errors
     /// [`SceneError::Length`] when the gradient or the scene does not belong to the last frame, or
@@ -180,11 +202,42 @@ impl DifferentiableRenderer {
         gradient: &ImageGradient<'_>,
         by_splats: &mut Splats,
     ) -> Result<(), SceneError> {
-        self.backward_to(scene, gradient, by_splats, None)
+        self.backward_to(scene, gradient, by_splats, None, None)
     }
 
-    /// [`backward`](Self::backward), which also gives the gradient by the poses: where a network's
-    /// own backward pass starts.
+    /// [`backward`](Self::backward), which goes on through the deformation network: `by_network` gets
+    /// ∂L/∂(its weights and biases), layer by layer in the order of [`DeformationNetwork::layers`],
+    /// the weight (row-major, outputs × inputs) before the bias. Without a network it gets nothing.
+    ///
+    /// The positions that enter the network are taken as constant, as in training (Deformable 3D
+    /// Gaussians). Only splats that some pixel saw are carried back; none of it depends on the
+    /// number of threads.
+    ///
+    /// # Errors
+    /// Those of [`backward`](Self::backward).
+    pub fn backward_with_network(
+        &mut self,
+        scene: &Scene,
+        gradient: &ImageGradient<'_>,
+        by_splats: &mut Splats,
+        by_network: &mut Vec<f32>,
+    ) -> Result<(), SceneError> {
+        by_network.clear();
+        let Some(network) = &scene.deformation else {
+            return self.backward(scene, gradient, by_splats);
+        };
+        let mut by_outputs = std::mem::take(&mut self.by_outputs);
+        let carried = self.backward_to(scene, gradient, by_splats, None, Some(&mut by_outputs));
+        self.by_outputs = by_outputs;
+        carried?;
+        by_network.resize(network.parameter_count(), 0.0);
+        let mut clock = Clock::start();
+        self.carry_to_network(scene, network, by_network);
+        self.times.deform_backward = clock.lap();
+        Ok(())
+    }
+
+    /// [`backward`](Self::backward), which also gives the gradient by the poses.
     ///
     /// # Errors
     /// Those of [`backward`](Self::backward).
@@ -195,7 +248,7 @@ impl DifferentiableRenderer {
         by_splats: &mut Splats,
         by_poses: &mut PoseGradients,
     ) -> Result<(), SceneError> {
-        self.backward_to(scene, gradient, by_splats, Some(by_poses))
+        self.backward_to(scene, gradient, by_splats, Some(by_poses), None)
     }
 
     fn backward_to(
@@ -204,6 +257,7 @@ impl DifferentiableRenderer {
         gradient: &ImageGradient<'_>,
         by_splats: &mut Splats,
         by_poses: Option<&mut PoseGradients>,
+        by_outputs: Option<&mut Vec<OutputGradient>>,
     ) -> Result<(), SceneError> {
         let mut clock = Clock::start();
         self.check(scene, gradient)?;
@@ -232,12 +286,45 @@ impl DifferentiableRenderer {
             last,
         };
         reset_like(by_splats, &scene.splats);
-        gradient_chunks(by_splats, by_poses).into_par_iter().for_each(|mut chunk| {
+        gradient_chunks(by_splats, by_poses, by_outputs).into_par_iter().for_each(|mut chunk| {
             dispatch!(self.options.level, simd => backward_chunk(simd, &input, &mut chunk));
         });
         self.times.rasterize_backward = rasterize_backward;
         self.times.project_backward = clock.lap();
+        self.times.deform_backward = Duration::ZERO;
         Ok(())
+    }
+
+    /// From the gradients by the network's outputs to those by its weights: splats of one time
+    /// together, those that a masked frame holds at t = 0 apart.
+    fn carry_to_network(
+        &self,
+        scene: &Scene,
+        network: &DeformationNetwork,
+        by_network: &mut [f32],
+    ) {
+        let Some(last) = &self.last else { return };
+        let is_held = |i: usize| match (&scene.motion, last.static_threshold) {
+            (Some(motion), Some(threshold)) => !is_dynamic(motion.values[i], threshold),
+            _ => false,
+        };
+        let mut now = MovedSplats::default();
+        let mut at_rest = MovedSplats::default();
+        for (i, by_output) in self.by_outputs.iter().enumerate() {
+            if *by_output == OutputGradient::default() {
+                continue;
+            }
+            let splats = if is_held(i) { &mut at_rest } else { &mut now };
+            let [x, y, z] = scene.splats.positions[i].map(f64::from);
+            let origin = scene.origin;
+            splats.positions.push([x + origin.x, y + origin.y, z + origin.z]);
+            splats.by_outputs.push(*by_output);
+        }
+        for (time, splats) in [(f64::from(last.time), now), (0.0, at_rest)] {
+            if !splats.positions.is_empty() {
+                network_backward(self.options.level, network, time, &splats, by_network);
+            }
+        }
     }
 
     /// Stage 1, and how it was done.
@@ -324,6 +411,11 @@ fn backward_splat(
         poses.scales[at] = by_pose.scale;
     }
     let by_sum = last.pose_rule.sum_backward(&pose, by_pose.rotation, by_pose.scale);
+    if let Some(outputs) = &mut chunk.outputs {
+        let [x, y, z] = by_pose.position;
+        let ([qw, qx, qy, qz], [sx, sy, sz]) = (by_sum.rotation, by_sum.scale);
+        outputs[at] = [x, y, z, qw, qx, qy, qz, sx, sy, sz];
+    }
     let canonical = match last.pose_rule {
         PoseRule::Static => pose,
         PoseRule::Deformed(_) => Deformed::static_pose(splats, i),

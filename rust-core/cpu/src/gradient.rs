@@ -2,6 +2,8 @@
 
 use trapeze_scene::Splats;
 
+use crate::deform_backward::OutputGradient;
+
 /// ∂L/∂image, for any loss L of a rendered frame.
 #[derive(Clone, Copy, Debug)]
 pub struct ImageGradient<'a> {
@@ -64,6 +66,8 @@ pub(crate) struct GradientChunk<'a> {
     pub(crate) sh_dc: &'a mut [[f32; 3]],
     sh_rest: &'a mut [f32],
     pub(crate) poses: Option<PoseChunk<'a>>,
+    /// By what the deformation network adds.
+    pub(crate) outputs: Option<&'a mut [OutputGradient]>,
 }
 
 /// The pose gradients of consecutive splats.
@@ -85,11 +89,12 @@ impl GradientChunk<'_> {
     }
 }
 
-/// Cuts gradients into chunks that can be written side by side. `poses` takes the length of the
-/// splats.
+/// Cuts gradients into chunks that can be written side by side. `poses` and `outputs` take the
+/// length of the splats.
 pub(crate) fn gradient_chunks<'a>(
     splats: &'a mut Splats,
     poses: Option<&'a mut PoseGradients>,
+    outputs: Option<&'a mut Vec<OutputGradient>>,
 ) -> Vec<GradientChunk<'a>> {
     let n = splats.len();
     let stride = splats.sh_rest_stride();
@@ -106,6 +111,11 @@ pub(crate) fn gradient_chunks<'a>(
             poses.rotations.chunks_mut(CHUNK),
             poses.scales.chunks_mut(CHUNK),
         )
+    });
+    let mut outputs = outputs.map(|outputs| {
+        outputs.clear();
+        outputs.resize(n, OutputGradient::default());
+        outputs.chunks_mut(CHUNK)
     });
     let mut log_scales = splats.log_scales.chunks_mut(CHUNK);
     let mut rotations = splats.rotations.chunks_mut(CHUNK);
@@ -131,6 +141,7 @@ pub(crate) fn gradient_chunks<'a>(
                     rotations: rotations.next().unwrap_or_default(),
                     scales: scales.next().unwrap_or_default(),
                 }),
+                outputs: outputs.as_mut().map(|outputs| outputs.next().unwrap_or_default()),
             }
         })
         .collect()

@@ -7,10 +7,27 @@
 use std::f64::consts::{FRAC_1_PI, TAU};
 
 use fearless_simd::prelude::*;
+use fearless_simd::{Level, dispatch};
 use fearless_simd_macros::simd;
 use trapeze_scene::deformation::Encoding;
 
-use super::group::{GROUP, Group};
+use super::group::{BLOCK, GROUP, Group};
+
+/// γ of any number of positions: `write` gets the place of each and its `encoding.width()` values.
+pub(crate) fn encode_positions(
+    level: Level,
+    encoding: Encoding,
+    positions: &[[f64; 3]],
+    mut write: impl FnMut(usize, &[f32]),
+) {
+    let mut rows: Group = [[0.0; BLOCK]; GROUP];
+    for (group, positions) in positions.chunks(GROUP).enumerate() {
+        dispatch!(level, simd => encode_group(simd, encoding, positions, &mut rows));
+        for (s, row) in rows[..positions.len()].iter().enumerate() {
+            write(group * GROUP + s, &row[..encoding.width()]);
+        }
+    }
+}
 
 /// γ of up to [`GROUP`] positions, into the first `encoding.width()` columns of their rows.
 #[simd]
@@ -67,10 +84,7 @@ fn sin_cos_of_turns(turns: f64) -> (f32, f32) {
 
 #[cfg(test)]
 mod tests {
-    use fearless_simd::{Level, dispatch};
-
     use super::*;
-    use crate::deform::group::BLOCK;
 
     /// The specification of the stage: 2e-7. Two roundings to f32 of values up to 1 (the reduced
     /// angle and the result, 3e-8 each) and the polynomials' own 6e-8 make 1.2e-7.

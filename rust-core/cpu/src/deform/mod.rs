@@ -14,5 +14,7 @@ mod network;
 mod order;
 mod stage;
 
+pub(crate) use encoding::encode_positions;
+
 pub use deformed::{Deformed, MAX_SCALE, SplatPose};
 pub use stage::{DeformationOptions, DeformationStage};

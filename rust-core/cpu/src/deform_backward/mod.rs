@@ -1,13 +1,17 @@
 //! The mirror of stage 1: ∂L/∂pose → ∂L/∂(stored parameters).
 //!
-//! With a deformation network, what is added to the canonical pose is taken as given: the gradient
-//! by the sum is the canonical value's and the network output's alike, and the way through the
+//! With a deformation network, the gradient by the sum of canonical value and network output is
+//! that of both. From there [`network_backward`] goes on to the weights; the way through the
 //! network's inputs is not followed (Deformable 3D Gaussians stops the gradient there).
+
+mod network;
 
 use trapeze_scene::deformation::RotationRule;
 
 use crate::deform::{MAX_SCALE, SplatPose};
 use crate::reference::deform::{MIN_DEFORMED_SCALE, MIN_TRAINED_ROTATION_LENGTH};
+
+pub(crate) use network::{MovedSplats, OutputGradient, network_backward};
 
 /// How poses came about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

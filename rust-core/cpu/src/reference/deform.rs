@@ -46,8 +46,8 @@ pub struct Pose {
     pub scale: [f64; 3],
 }
 
-/// What the network says about one splat at one time.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// What the network says about one splat at one time; or a loss's gradient by that.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct NetworkOutput {
     /// Added to the position, world units. For [`PositionHead::Screw`] it is the displacement
     /// that the screw motion gives this position.
@@ -161,10 +161,7 @@ fn network_time(t: f64) -> f64 {
 /// layer `skip_after` the input is put in front of the hidden vector.
 #[must_use]
 pub fn evaluate_network(network: &DeformationNetwork, world: [f64; 3], t: f64) -> NetworkOutput {
-    let mut input = vec![0.0; network.position_width()];
-    network.position_encoding.encode(&world, &mut input);
-    input.extend(time_features(network.time_encoding, network.time_network.as_ref(), t));
-
+    let input = network_input(network, world, t);
     let mut h = input.clone();
     for (i, layer) in network.hidden.iter().enumerate() {
         h = linear(layer, &h);
@@ -187,11 +184,26 @@ pub fn evaluate_network(network: &DeformationNetwork, world: [f64; 3], t: f64) -
     }
 }
 
+/// What enters layer 0: [γ(xyz), time features].
+pub(super) fn network_input(network: &DeformationNetwork, world: [f64; 3], t: f64) -> Vec<f64> {
+    let mut input = vec![0.0; network.position_width()];
+    network.position_encoding.encode(&world, &mut input);
+    input.extend(time_features(network.time_encoding, network.time_network.as_ref(), t));
+    input
+}
+
+/// γ of the time that the network sees.
+#[must_use]
+pub(crate) fn encoded_time(encoding: Encoding, t: f64) -> Vec<f64> {
+    let mut encoded = vec![0.0; encoding.width()];
+    encoding.encode(&[network_time(t)], &mut encoded);
+    encoded
+}
+
 /// What enters layer 0 besides the position: γ(t), or the time network's answer to it.
 #[must_use]
 pub(crate) fn time_features(encoding: Encoding, network: Option<&TimeNetwork>, t: f64) -> Vec<f64> {
-    let mut encoded = vec![0.0; encoding.width()];
-    encoding.encode(&[network_time(t)], &mut encoded);
+    let encoded = encoded_time(encoding, t);
     match network {
         None => encoded,
         Some(net) => {
@@ -205,7 +217,7 @@ pub(crate) fn time_features(encoding: Encoding, network: Option<&TimeNetwork>, t
 /// W x + b. Each row is summed in the order of its columns.
 ///
 /// Such a sum is a chain of dependent additions; four rows side by side take the time of one.
-fn linear(layer: &Linear, x: &[f64]) -> Vec<f64> {
+pub(super) fn linear(layer: &Linear, x: &[f64]) -> Vec<f64> {
     const ROWS: usize = 4;
     let row = |r: usize| &layer.weight[r * layer.inputs..(r + 1) * layer.inputs];
     let last = layer.outputs - 1;
@@ -225,15 +237,18 @@ fn linear(layer: &Linear, x: &[f64]) -> Vec<f64> {
 }
 
 /// max(0, x); `f64::max` gives 0 for NaN.
-fn rectify(h: &mut [f64]) {
+pub(super) fn rectify(h: &mut [f64]) {
     for x in h {
         *x = x.max(0.0);
     }
 }
 
-fn three(values: &[f64]) -> [f64; 3] {
+pub(super) fn three(values: &[f64]) -> [f64; 3] {
     std::array::from_fn(|c| values[c])
 }
+
+/// Part of every component of a screw's axis and pitch.
+pub(super) const UPSTREAM_SCREW_OFFSET: DVec3 = DVec3::splat(1e-5);
 
 /// exp([S] θ) x − x for the screw axis S = (w/θ + 1e-5, v/θ + 1e-5), θ = ‖w‖ (Lynch & Park,
 /// "Modern Robotics", eq. 3.88; the 1e-5 is upstream's, and part of what a checkpoint learned).
@@ -242,14 +257,13 @@ fn three(values: &[f64]) -> [f64; 3] {
 /// 1 − cos θ is computed as 2 sin²(θ/2): v/θ would amplify its cancellation.
 #[must_use]
 pub(crate) fn screw_displacement(w: [f64; 3], v: [f64; 3], x: [f64; 3]) -> [f64; 3] {
-    const UPSTREAM_OFFSET: DVec3 = DVec3::splat(1e-5);
     let (w, v) = (DVec3::from(w), DVec3::from(v));
     let theta = w.length();
     if theta < f64::MIN_POSITIVE {
         return v.to_array();
     }
-    let axis = w / theta + UPSTREAM_OFFSET;
-    let pitch = v / theta + UPSTREAM_OFFSET;
+    let axis = w / theta + UPSTREAM_SCREW_OFFSET;
+    let pitch = v / theta + UPSTREAM_SCREW_OFFSET;
     let cross = DMat3::from_cols(
         DVec3::new(0.0, axis.z, -axis.y),
         DVec3::new(-axis.z, 0.0, axis.x),

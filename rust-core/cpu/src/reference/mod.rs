@@ -6,9 +6,10 @@
 //! Stages, in order: [`deform`], [`pose_scene`] (activations and colour), [`Projection`]
 //! (EWA, Zwicker et al. 2001), [`rasterize`] (front-to-back blending, Porter & Duff 1984). Their
 //! mirror images, in reverse: [`rasterize_backward`], [`Projection::project_backward`],
-//! [`pose_backward`].
+//! [`pose_backward`], [`network_gradient`].
 
 pub mod deform;
+mod network_backward;
 mod parameters;
 mod pose;
 mod pose_backward;
@@ -21,10 +22,13 @@ use rayon::prelude::*;
 use trapeze_scene::{Camera, FrameSettings, Scene};
 
 use crate::gradient::ImageGradient;
+use deform::NetworkOutput;
 
+pub use network_backward::{LayerGradient, NetworkGradient, network_backward, network_gradient};
+pub(crate) use network_backward::{screw_backward, time_network_backward};
 pub use parameters::SplatParameters;
 pub use pose::{PosedSplat, pose_scene};
-pub use pose_backward::pose_backward;
+pub use pose_backward::{StoredGradient, pose_backward};
 pub use project::{
     ALPHA_MAX, ALPHA_MIN, JACOBIAN_MARGIN, LOW_PASS, NEAR_PLANE, ProjectedSplat, Projection,
     TRANSMITTANCE_MIN,
@@ -64,6 +68,9 @@ pub struct ReferenceGradients {
     pub splats: Vec<SplatParameters>,
     /// By the pose at the time of the frame, and by opacity (0–1) and colour.
     pub poses: Vec<PosedGradient>,
+    /// By what the deformation network adds to each splat: where [`network_gradient`] starts. In
+    /// scenes without one, by what it would add.
+    pub outputs: Vec<NetworkOutput>,
 }
 
 /// The vector–Jacobian product of [`render`] with ∂L/∂image. [`pose_backward`] says what is taken
@@ -89,12 +96,13 @@ pub fn gradients(
         poses[splat.index as usize] = projection.project_backward(source, splat, by_projected);
     }
     let eye = camera.centre();
-    let splats = poses
+    let (splats, outputs) = poses
         .par_iter()
         .enumerate()
         .map(|(i, by_pose)| pose_backward(scene, i, eye, settings, by_pose))
-        .collect();
-    ReferenceGradients { splats, poses }
+        .map(|StoredGradient { splat, output }| (splat, output))
+        .unzip();
+    ReferenceGradients { splats, poses, outputs }
 }
 
 /// Posed splats in the order of the scene, and those that are projected in drawing order. `camera`

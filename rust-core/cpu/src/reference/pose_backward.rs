@@ -17,12 +17,21 @@ use super::{PosedGradient, SplatParameters};
 use crate::deform::MAX_SCALE;
 use crate::project::MAX_CHANNEL;
 
-/// Gradient of splat `i` by its stored parameters, from the gradient of the posed splat.
+/// What comes out of [`pose_backward`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct StoredGradient {
+    /// By the stored parameters.
+    pub splat: SplatParameters,
+    /// By what the deformation network adds to the pose, in scenes without one by what it would.
+    pub output: NetworkOutput,
+}
+
+/// Gradient of splat `i` by its stored parameters and by the outputs of the deformation network,
+/// from the gradient of the posed splat.
 ///
-/// With a deformation network, its outputs are taken as given: the gradient by an output is that
-/// by the pose before its normalisation and floor, which is also what the canonical value gets
-/// (they are added), and the way through the network's inputs is not followed, as in training
-/// (Deformable 3D Gaussians stops the gradient there).
+/// Outputs and canonical values are added, so both get the gradient by their sum: that by the pose
+/// before its normalisation and floor. The way through the network's inputs is not followed, as in
+/// training (Deformable 3D Gaussians stops the gradient there).
 #[must_use]
 pub fn pose_backward(
     scene: &Scene,
@@ -30,7 +39,7 @@ pub fn pose_backward(
     eye: DVec3,
     settings: &FrameSettings,
     gradient: &PosedGradient,
-) -> SplatParameters {
+) -> StoredGradient {
     let parameters = SplatParameters::of(&scene.splats, i);
     let degree = scene.splats.sh_degree.min(settings.max_sh_degree);
     let (sh, through_color) = match settings.color_source {
@@ -51,13 +60,21 @@ pub fn pose_backward(
         }
     };
     let opacity = sigmoid(parameters.opacity_logit);
-    SplatParameters {
-        position: gradient.position + through_color,
-        log_scale: log_scale_backward(parameters.log_scale, scale),
-        rotation: unit_backward(parameters.rotation, rotation),
-        // σ' = σ(x)·σ(−x), without cancellation near 1.
-        opacity_logit: gradient.opacity * opacity * sigmoid(-parameters.opacity_logit),
-        sh,
+    let position = gradient.position + through_color;
+    StoredGradient {
+        splat: SplatParameters {
+            position,
+            log_scale: log_scale_backward(parameters.log_scale, scale),
+            rotation: unit_backward(parameters.rotation, rotation),
+            // σ' = σ(x)·σ(−x), without cancellation near 1.
+            opacity_logit: gradient.opacity * opacity * sigmoid(-parameters.opacity_logit),
+            sh,
+        },
+        output: NetworkOutput {
+            displacement: position.to_array(),
+            d_rotation: rotation,
+            d_scale: scale.to_array(),
+        },
     }
 }
 

@@ -3,4 +3,7 @@
 
 mod differences;
 mod fast;
+mod network;
 mod scenes;
+#[path = "../support/mod.rs"]
+mod support;
