@@ -7,7 +7,6 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use trapeze_cpu::Renderer;
-use trapeze_cpu::deform::DeformationStage;
 use trapeze_formats::load_scene;
 use trapeze_query::Searcher;
 use trapeze_query::crops::{CropOptions, CropRenderer};
@@ -50,26 +49,23 @@ fn assert_each_phrase_finds_its_cluster(answer: &Answer) {
 }
 
 /// A renderer that a screen uses too.
-struct SharedRenderer {
-    stage: DeformationStage,
-    renderer: Renderer,
-}
+struct SharedRenderer(Renderer);
 
 impl SharedRenderer {
     /// A renderer for the scene.
     fn new(scene: Arc<Scene>) -> Self {
-        Self { stage: DeformationStage::new(&scene), renderer: Renderer::new(scene) }
+        Self(Renderer::new(scene))
     }
 
     /// Draws a frame as a screen would.
     fn draw(&mut self, camera: &Camera, settings: &FrameSettings) -> Frame {
-        self.renderer.render(camera, settings).expect("a usable camera")
+        self.0.render(camera, settings).expect("a usable camera")
     }
 }
 
 impl CropRenderer for SharedRenderer {
     fn positions(&mut self, time: f32) -> Vec<[f32; 3]> {
-        self.stage.evaluate(time, None).positions.clone()
+        self.0.positions(time).to_vec()
     }
 
     fn render(
@@ -77,7 +73,7 @@ impl CropRenderer for SharedRenderer {
         camera: &Camera,
         settings: &FrameSettings,
     ) -> Result<Frame, Box<dyn Error + Send + Sync>> {
-        Ok(self.renderer.render(camera, settings)?)
+        Ok(self.0.render(camera, settings)?)
     }
 }
 

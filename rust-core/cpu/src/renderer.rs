@@ -111,6 +111,12 @@ impl Renderer {
         self.sorted.len()
     }
 
+    /// Centres of all splats at a time, relative to the scene's origin; nothing rests. Frames of the
+    /// same time that follow do not evaluate the network again.
+    pub fn positions(&mut self, time: f32) -> &[[f32; 3]] {
+        &self.deform.deform(&self.scene, time, None).positions
+    }
+
     /// Renders one frame.
     ///
     /// # Errors

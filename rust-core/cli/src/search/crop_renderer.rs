@@ -9,23 +9,17 @@ use trapeze_query::crops::CropRenderer;
 use trapeze_scene::{Camera, Frame, FrameSettings, Scene};
 
 /// Renders the scene that is searched.
-pub(crate) struct CpuCropRenderer {
-    scene: Arc<Scene>,
-    renderer: Renderer,
-    /// Made when positions are first asked for; the renderer keeps its own to itself.
-    stage: Option<DeformationStage>,
-}
+pub(crate) struct CpuCropRenderer(Renderer);
 
 impl CpuCropRenderer {
     pub(crate) fn new(scene: Arc<Scene>) -> Self {
-        Self { renderer: Renderer::new(Arc::clone(&scene)), scene, stage: None }
+        Self(Renderer::new(scene))
     }
 }
 
 impl CropRenderer for CpuCropRenderer {
     fn positions(&mut self, time: f32) -> Vec<[f32; 3]> {
-        let stage = self.stage.get_or_insert_with(|| DeformationStage::new(&self.scene));
-        stage.evaluate(time, None).positions.clone()
+        self.0.positions(time).to_vec()
     }
 
     fn render(
@@ -33,7 +27,7 @@ impl CropRenderer for CpuCropRenderer {
         camera: &Camera,
         settings: &FrameSettings,
     ) -> Result<Frame, Box<dyn Error + Send + Sync>> {
-        Ok(self.renderer.render(camera, settings)?)
+        Ok(self.0.render(camera, settings)?)
     }
 }
 
