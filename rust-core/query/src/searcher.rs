@@ -192,9 +192,7 @@ impl Searcher {
     /// # Errors
     /// [`SearchError::EmptyText`], [`SearchError::Model`] for a text that is too long.
     pub fn check(&mut self, phrases: &[&str]) -> Result<(), SearchError> {
-        if phrases.is_empty() || phrases.iter().any(|phrase| phrase.trim().is_empty()) {
-            return Err(SearchError::EmptyText);
-        }
+        expect_words(phrases)?;
         for phrase in phrases {
             phrase_feature(self.embedder.as_mut(), phrase)?;
         }
@@ -211,9 +209,7 @@ impl Searcher {
         phrases: &[&str],
         options: &QueryOptions,
     ) -> Result<Answer, SearchError> {
-        if phrases.is_empty() || phrases.iter().any(|phrase| phrase.trim().is_empty()) {
-            return Err(SearchError::EmptyText);
-        }
+        expect_words(phrases)?;
         if self.outdated() > 0 {
             return Err(SearchError::NotEncoded { missing: self.outdated() });
         }
@@ -312,7 +308,7 @@ impl Searcher {
 
     /// Adds the features of crops, weighted.
     fn add(&mut self, cluster: &mut Pending, crops: &[Crop]) -> Result<(), SearchError> {
-        let images: Vec<RgbImage> = crops.iter().map(|crop| crop.image.clone()).collect();
+        let images: Vec<&RgbImage> = crops.iter().map(|crop| &crop.image).collect();
         for (crop, feature) in crops.iter().zip(self.embedder.embed_images(&images)?) {
             for (sum, value) in cluster.sum.iter_mut().zip(feature) {
                 *sum += crop.weight * value;
@@ -382,6 +378,14 @@ fn clusters_of(scene: &Scene) -> Result<&Clusters, SearchError> {
         .as_ref()
         .filter(|clusters| !clusters.table.is_empty())
         .ok_or(SearchError::NoClusters)
+}
+
+/// Some phrases, and something in each of them.
+fn expect_words(phrases: &[&str]) -> Result<(), SearchError> {
+    if phrases.is_empty() || phrases.iter().any(|phrase| phrase.trim().is_empty()) {
+        return Err(SearchError::EmptyText);
+    }
+    Ok(())
 }
 
 fn feature_of(state: &Option<ClusterState>) -> Option<&[f32]> {

@@ -100,11 +100,11 @@ fn features_have_unit_length_and_do_not_depend_on_the_batch() {
     let pictures: Vec<RgbImage> = (1..12_u32)
         .map(|i| RgbImage::from_fn(20 + i, 30, |x, y| image::Rgb([(x * i) as u8, y as u8, 90])))
         .collect();
-    let together = model.embed_images(&pictures).unwrap();
+    let together = model.embed_images(&pictures.iter().collect::<Vec<_>>()).unwrap();
     for (picture, feature) in pictures.iter().zip(&together) {
         let length: f32 = feature.iter().map(|v| v * v).sum();
         assert!((length - 1.0).abs() < 1e-5);
-        let alone = &model.embed_images(std::slice::from_ref(picture)).unwrap()[0];
+        let alone = &model.embed_images(&[picture]).unwrap()[0];
         // The runtime's sums may be ordered otherwise for another batch.
         let largest = alone.iter().zip(feature).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
         assert!(largest < 1e-5, "{largest}");

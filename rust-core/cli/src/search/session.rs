@@ -80,17 +80,13 @@ pub(crate) fn search(
         return Err(SearchError::NoClusters.into());
     }
     let phrases: Vec<&str> = arguments.phrases.iter().map(String::as_str).collect();
-    if phrases.iter().any(|phrase| phrase.trim().is_empty()) {
-        return Err(SearchError::EmptyText.into());
-    }
     let model = OnnxModel::open(arguments.models).map_err(SearchError::from)?;
     let name = model.description().name.clone();
     let mut searcher = Searcher::new(Arc::clone(scene), Box::new(model), arguments.crops.clone())?;
-    searcher.check(&phrases)?;
     let mut renderer = CpuCropRenderer::new(Arc::clone(scene));
 
     let start = Instant::now();
-    let encoded = encode(&mut searcher, &mut renderer, arguments)?;
+    let encoded = encode(&mut searcher, &phrases, &mut renderer, arguments)?;
     let encode_time = start.elapsed();
     let start = Instant::now();
     let answer = searcher.query(&phrases, &arguments.query)?;
@@ -120,6 +116,7 @@ pub(crate) fn search(
 /// Takes what is kept, encodes the rest, and keeps it. A file that cannot be used is made anew.
 fn encode(
     searcher: &mut Searcher,
+    phrases: &[&str],
     renderer: &mut CpuCropRenderer,
     arguments: &SearchArguments<'_>,
 ) -> Result<trapeze_query::Encoded, CliError> {
@@ -131,6 +128,10 @@ fn encode(
         }
         Ok(None) => {}
         Err(error) => tracing::warn!("{error}; the clusters are encoded again"),
+    }
+    if searcher.outdated() > 0 {
+        // What is wrong with them is told before the long work, not after it.
+        searcher.check(phrases)?;
     }
     let progress = progress_bar(0, "encoding");
     let encoded = searcher.encode(renderer, |done, all| {

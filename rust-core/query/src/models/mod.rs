@@ -34,7 +34,7 @@ pub trait Embedder: Send {
     ///
     /// # Errors
     /// [`ModelError`] when the model cannot be run or gives numbers that are none.
-    fn embed_images(&mut self, images: &[RgbImage]) -> Result<Vec<Vec<f32>>, ModelError>;
+    fn embed_images(&mut self, images: &[&RgbImage]) -> Result<Vec<Vec<f32>>, ModelError>;
 
     /// Features of texts, in their order, likewise.
     ///

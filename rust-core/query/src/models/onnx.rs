@@ -118,7 +118,7 @@ impl Embedder for OnnxModel {
         self.image_key
     }
 
-    fn embed_images(&mut self, images: &[RgbImage]) -> Result<Vec<Vec<f32>>, ModelError> {
+    fn embed_images(&mut self, images: &[&RgbImage]) -> Result<Vec<Vec<f32>>, ModelError> {
         let numbers = 3 * (self.description.image.size as usize).pow(2);
         let mut features = Vec::with_capacity(images.len());
         for batch in images.chunks(IMAGE_BATCH) {

@@ -27,7 +27,7 @@ impl Embedder for ColourModel {
         1
     }
 
-    fn embed_images(&mut self, images: &[RgbImage]) -> Result<Vec<Vec<f32>>, ModelError> {
+    fn embed_images(&mut self, images: &[&RgbImage]) -> Result<Vec<Vec<f32>>, ModelError> {
         let mean = |image: &RgbImage| {
             let count = image.pixels().len() as f32;
             let mut mean: Vec<f32> = (0..3)
@@ -36,7 +36,7 @@ impl Embedder for ColourModel {
             mean.push(1.0);
             normalised(&mean).unwrap()
         };
-        Ok(images.iter().map(mean).collect())
+        Ok(images.iter().copied().map(mean).collect())
     }
 
     fn embed_texts(&mut self, texts: &[String]) -> Result<Vec<Vec<f32>>, ModelError> {
