@@ -1,11 +1,15 @@
 //! What Swift is told when something goes wrong, and the net under every entry.
 
 use std::any::Any;
+#[cfg(feature = "search")]
+use std::io::ErrorKind;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::PoisonError;
 
 use trapeze_formats::{ParseError, ReadError, WriteError};
 use trapeze_gpu::GpuError;
+#[cfg(feature = "search")]
+use trapeze_query::{SearchError, models::ModelError};
 use trapeze_scene::SceneError;
 use trapeze_scene::edit::EditError;
 use trapeze_train::TrainError;
@@ -45,7 +49,8 @@ pub(crate) enum Code {
 }
 
 /// A failure: what kind it is, and one line of English that names file, field and expectation.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
+#[error("{message}")]
 pub(crate) struct Failure {
     code: Code,
     message: String,
@@ -207,6 +212,44 @@ impl From<BackendError> for Failure {
             BackendError::View { .. } => Code::UnusableDataset,
             BackendError::Render(_) => Code::InvalidArgument,
             BackendError::MissingTarget { .. } => Code::InternalFault,
+        };
+        Self::new(code, error.to_string())
+    }
+}
+
+#[cfg(feature = "search")]
+impl From<SearchError> for Failure {
+    fn from(error: SearchError) -> Self {
+        let code = match error {
+            SearchError::Model(error) => return error.into(),
+            // Crops are rendered by this crate: what comes back is its own.
+            SearchError::Render(source) => {
+                let own = source.downcast::<Self>();
+                return own
+                    .map_or_else(|e| Self::new(Code::InternalFault, e.to_string()), |own| *own);
+            }
+            SearchError::Cancelled => return crate::work::Work::cancelled(),
+            SearchError::NoClusters | SearchError::EmptyText | SearchError::NotEncoded { .. } => {
+                Code::InvalidArgument
+            }
+        };
+        Self::new(code, error.to_string())
+    }
+}
+
+#[cfg(feature = "search")]
+impl From<ModelError> for Failure {
+    fn from(error: ModelError) -> Self {
+        let code = match &error {
+            ModelError::RuntimeMissing { .. } | ModelError::RuntimeUnusable { .. } => {
+                Code::ModelsMissing
+            }
+            ModelError::File { source, .. } if source.kind() == ErrorKind::NotFound => {
+                Code::ModelsMissing
+            }
+            ModelError::File { .. } => Code::UnreadableFile,
+            ModelError::Value { .. } | ModelError::Tower { .. } => Code::MalformedFile,
+            ModelError::TextTooLong { .. } => Code::InvalidArgument,
         };
         Self::new(code, error.to_string())
     }

@@ -381,14 +381,16 @@ mod ffi {
         type SearchModel;
         fn open_search_model(path: String, work: &Work) -> Result<SearchModel, Failure>;
         fn name(self: &SearchModel) -> String;
+        // The least score of a match, 0–1.
+        fn threshold(self: &SearchModel) -> f64;
     }
 
     extern "Rust" {
         #[swift_bridge(Sendable)]
         type Searcher;
         fn make_searcher(model: &SearchModel, scene: &Scene) -> Result<Searcher, Failure>;
-        // The renderer is one of the same scene. Features are kept in the folder `cache`; an empty
-        // name keeps them nowhere.
+        // Draws on the renderer's device. Features are kept in the folder `cache`; an empty name
+        // keeps them nowhere.
         fn encode(
             self: &Searcher,
             renderer: &Renderer,
@@ -396,7 +398,8 @@ mod ffi {
             work: &Work,
         ) -> Result<(), Failure>;
         fn encoded_clusters(self: &Searcher) -> Vec<u32>;
-        fn thumbnail(self: &Searcher, renderer: &Renderer, cluster: u32) -> Result<Image, Failure>;
+        // The picture of an encoded cluster, once after each encoding.
+        fn take_picture(self: &Searcher, cluster: u32) -> Result<Image, Failure>;
         fn search(self: &Searcher, text: String) -> Result<Hits, Failure>;
     }
 

@@ -26,4 +26,9 @@ impl Image {
     pub(crate) fn byte_count(&self) -> usize {
         self.0.pixels.len()
     }
+
+    #[cfg(test)]
+    pub(crate) fn rgba(&self) -> &[u8] {
+        &self.0.pixels
+    }
 }

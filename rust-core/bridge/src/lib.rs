@@ -12,6 +12,7 @@
 
 // Arguments cross the border by value, whether their bodies keep them or not.
 #![allow(clippy::needless_pass_by_value)]
+#![cfg_attr(not(feature = "search"), allow(dead_code, reason = "search alone asks for some of it"))]
 
 mod dataset;
 mod device;
@@ -24,6 +25,7 @@ mod image;
 mod measure;
 mod renderer;
 mod scene;
+#[cfg_attr(not(feature = "search"), path = "searcher/absent.rs")]
 mod searcher;
 mod self_check;
 mod trainer;

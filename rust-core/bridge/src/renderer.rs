@@ -225,6 +225,15 @@ impl Renderer {
         })
     }
 
+    /// Another scene on the same device, at its most exact: for pictures that are not for the screen.
+    pub(crate) fn offscreen(&self, scene: Arc<trapeze_scene::Scene>) -> Result<Backend, Failure> {
+        self.with(|state| state.expect_awake())?;
+        let precision = NetworkPrecision::Single;
+        guarded(|| {
+            Backend::new(&self.device, scene, Options { precision, max_sh_degree: ShDegree::Three })
+        })
+    }
+
     /// Gives back the buffers on the device, which the next frame makes again at their first size.
     pub(crate) fn shed_memory(&self) -> Result<(), Failure> {
         self.with(|state| {

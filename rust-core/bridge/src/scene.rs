@@ -1,6 +1,6 @@
 //! Scenes: opening one, what is in it, and what an edit makes of it.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -21,6 +21,16 @@ pub(crate) struct Scene {
     scene: Arc<trapeze_scene::Scene>,
     /// Splats of each cluster.
     cluster_sizes: Vec<usize>,
+    source: Source,
+}
+
+/// What a scene was before it was edited.
+#[derive(Clone, Debug)]
+struct Source {
+    /// Where it was read from; `None` for one that was trained.
+    location: Option<PathBuf>,
+    /// Checksum of its positions and labels.
+    key: u32,
 }
 
 /// Version of the core.
@@ -34,7 +44,9 @@ pub(crate) fn open_scene(path: String, work: &Work) -> Result<Scene, Failure> {
         let scene = load_scene_with(Path::new(&path), |part| {
             work.flow(Stage::Reading, Some(share_before(part)))
         })?;
-        Ok(Scene::new(scene.ok_or_else(Work::cancelled)?))
+        let mut scene = Scene::new(scene.ok_or_else(Work::cancelled)?);
+        scene.source.location = Some(path.into());
+        Ok(scene)
     })
 }
 
@@ -52,7 +64,23 @@ impl Scene {
     pub(crate) fn new(scene: trapeze_scene::Scene) -> Self {
         let sizes = scene.clusters.as_ref().map(trapeze_scene::Clusters::sizes);
         let cluster_sizes = sizes.unwrap_or_default();
-        Self { scene: Arc::new(scene), cluster_sizes }
+        let source = Source { location: None, key: checksum(&scene) };
+        Self { scene: Arc::new(scene), cluster_sizes, source }
+    }
+
+    /// The scene that an edit has made of this one.
+    fn followed_by(&self, scene: trapeze_scene::Scene) -> Self {
+        Self { source: self.source.clone(), ..Self::new(scene) }
+    }
+
+    /// Where it was read from, before any edit.
+    pub(crate) fn location(&self) -> Option<&Path> {
+        self.source.location.as_deref()
+    }
+
+    /// Recognises the scene by what it was before any edit, wherever its file lies.
+    pub(crate) fn key(&self) -> u32 {
+        self.source.key
     }
 
     pub(crate) fn shared(&self) -> &Arc<trapeze_scene::Scene> {
@@ -134,7 +162,7 @@ impl Scene {
     }
 
     pub(crate) fn edited(&self, edits: &Edits, work: &Work) -> Result<Scene, Failure> {
-        guarded(|| edits.apply(&self.scene, work).map(Scene::new))
+        guarded(|| Ok(self.followed_by(edits.apply(&self.scene, work)?)))
     }
 
     /// The same scene with the motion value of every splat.
@@ -146,7 +174,7 @@ impl Scene {
             let motion = measure_motion(&self.scene, &MotionOptions::default(), progress);
             let motion = Some(motion.ok_or_else(Work::cancelled)?);
             let scene = trapeze_scene::Scene { motion, ..trapeze_scene::Scene::clone(&self.scene) };
-            Ok(Scene::new(scene))
+            Ok(self.followed_by(scene))
         })
     }
 
@@ -158,6 +186,15 @@ impl Scene {
     ) -> Result<Exported, Failure> {
         guarded(|| export(&self.scene, Path::new(&path), format, work))
     }
+}
+
+fn checksum(scene: &trapeze_scene::Scene) -> u32 {
+    let mut hasher = crc32fast::Hasher::new();
+    hasher.update(bytemuck::cast_slice(&scene.splats.positions));
+    if let Some(clusters) = &scene.clusters {
+        hasher.update(bytemuck::cast_slice(&clusters.labels));
+    }
+    hasher.finalize()
 }
 
 /// All NaN for no box.

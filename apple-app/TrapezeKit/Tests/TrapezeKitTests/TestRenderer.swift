@@ -101,6 +101,7 @@ actor TestRenderer: RenderEngine {
 /// Scores a cluster by how many characters of its name are in the text.
 final class TestSearcher: SearchEngine {
   let modelName = "letters"
+  let threshold = 0.75
   private let engine: TestEngine
 
   init(engine: TestEngine) { self.engine = engine }

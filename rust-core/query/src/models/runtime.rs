@@ -29,8 +29,8 @@ pub fn runtime_cache() -> PathBuf {
     caches.join("trapeze/onnxruntime")
 }
 
-/// The runtime's library: at `ORT_DYLIB_PATH`, beside the program, in the cache folder
-/// ([`runtime_cache`]) or in Python's `onnxruntime` package.
+/// The runtime's library: at `ORT_DYLIB_PATH`, beside the program, among the frameworks of a Mac's app,
+/// in the cache folder ([`runtime_cache`]) or in Python's `onnxruntime` package.
 ///
 /// # Errors
 /// [`ModelError::RuntimeMissing`] when it is nowhere, [`ModelError::File`] when `ORT_DYLIB_PATH`
@@ -46,8 +46,10 @@ pub fn find_runtime() -> Result<RuntimeSource, ModelError> {
     }
     let beside = std::env::current_exe().ok().and_then(|exe| exe.parent().map(Path::to_owned));
     let cache = runtime_cache();
+    let frameworks = beside.as_ref().map(|folder| folder.join("../Frameworks"));
     beside
         .and_then(|folder| library_in(&folder))
+        .or_else(|| frameworks.and_then(|folder| library_in(&folder)))
         .or_else(|| library_in(&cache))
         .or_else(|| python_package().and_then(|folder| library_in(&folder.join("capi"))))
         .map(RuntimeSource::Library)

@@ -2205,6 +2205,10 @@ extension SearchModelRef {
     public func name() -> RustString {
         RustString(ptr: __swift_bridge__$SearchModel$name(ptr))
     }
+
+    public func threshold() -> Double {
+        __swift_bridge__$SearchModel$threshold(ptr)
+    }
 }
 extension SearchModel: Vectorizable {
     public static func vecOfSelfNew() -> UnsafeMutableRawPointer {
@@ -2290,8 +2294,8 @@ extension SearcherRef {
         RustVec(ptr: __swift_bridge__$Searcher$encoded_clusters(ptr))
     }
 
-    public func thumbnail(_ renderer: RendererRef, _ cluster: UInt32) throws -> Image {
-        try { let val = __swift_bridge__$Searcher$thumbnail(ptr, renderer.ptr, cluster); if val.is_ok { return Image(ptr: val.ok_or_err!) } else { throw Failure(ptr: val.ok_or_err!) } }()
+    public func take_picture(_ cluster: UInt32) throws -> Image {
+        try { let val = __swift_bridge__$Searcher$take_picture(ptr, cluster); if val.is_ok { return Image(ptr: val.ok_or_err!) } else { throw Failure(ptr: val.ok_or_err!) } }()
     }
 
     public func search<GenericIntoRustString: IntoRustString>(_ text: GenericIntoRustString) throws -> Hits {

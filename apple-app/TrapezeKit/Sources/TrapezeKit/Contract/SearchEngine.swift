@@ -5,8 +5,12 @@ public protocol SearchEngine: AnyObject, Sendable {
   /// Name of the models, e.g. `MobileCLIP2-S0`.
   var modelName: String { get }
 
+  /// The least score of a match, as it was measured for these models: they differ widely.
+  var threshold: Double { get }
+
   /// Looks at every cluster from several sides and keeps an embedding of each, in memory and in
-  /// `cache`. Clusters that are in `cache` already are not looked at again.
+  /// `cache`. Clusters that are in `cache` or beside the scene already are not looked at again. Draws
+  /// on the device of `renderer`; what is on the screen plays no part.
   func encode(
     _ scene: any SceneEngine, renderer: any RenderEngine, cache: URL?
   ) -> ProgressStream<SearchIndex>
@@ -19,7 +23,7 @@ public protocol SearchEngine: AnyObject, Sendable {
 public struct SearchIndex: Sendable {
   /// Clusters that could be seen well enough to be embedded.
   public var encodedClusters: Set<ClusterID>
-  /// A picture of each.
+  /// A picture of each, where there is one.
   public var thumbnails: [ClusterID: RenderedImage]
   /// The engine's own data.
   public var storage: any Sendable

@@ -5,10 +5,12 @@ internal import TrapezeBridge
 public final class SceneSearcher: SearchEngine {
   private let model: TrapezeBridge.SearchModel
   public let modelName: String
+  public let threshold: Double
 
   init(_ model: TrapezeBridge.SearchModel) {
     self.model = model
     modelName = model.name().toString()
+    threshold = model.threshold()
   }
 
   public func encode(
@@ -23,7 +25,8 @@ public final class SceneSearcher: SearchEngine {
       let clusters = Set(searcher.encoded_clusters())
       var thumbnails: [ClusterID: RenderedImage] = [:]
       for cluster in clusters.sorted() {
-        thumbnails[cluster] = try RenderedImage(try searcher.thumbnail(renderer.core, cluster))
+        // A cluster that was encoded in another pose may not be seen in this one.
+        thumbnails[cluster] = try? RenderedImage(try searcher.take_picture(cluster))
       }
       return SearchIndex(
         encodedClusters: clusters, thumbnails: thumbnails, storage: Index(searcher: searcher))
