@@ -30,7 +30,9 @@ import Testing
   @Test func resultsFollowTheTextTheThresholdAndTheNumber() async throws {
     let window = try await encoded()
     let search = window.scene.search
-    search.settings.threshold = 0.5
+    #expect(search.lowestScore == 0.75, "the models' own")
+    search.lowestScore = 0.5
+    #expect(search.settings.threshold == 0.5)
     search.text = "red"
     await search.settle()
     #expect(search.results.map(\.id) == [3])

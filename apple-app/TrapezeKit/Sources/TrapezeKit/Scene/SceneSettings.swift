@@ -48,9 +48,9 @@ public struct SearchSettings: Sendable, Equatable {
   public static let counts = 1...100
 
   public var scope = Scope.all
-  /// Lowest score that counts as a match.
-  public var threshold = 0.5 {
-    didSet { threshold = clamped(threshold, Self.thresholds) }
+  /// Lowest score that counts as a match; `nil` for the models' own.
+  public var threshold: Double? {
+    didSet { threshold = threshold.map { clamped($0, Self.thresholds) } }
   }
   /// Most results.
   public var topK = 5 {
@@ -107,7 +107,7 @@ extension SearchSettings: Codable {
   public init(from decoder: any Decoder) throws {
     let fields = try decoder.container(keyedBy: CodingKeys.self)
     scope = fields.value(.scope, else: scope)
-    threshold = clamped(fields.value(.threshold, else: threshold), Self.thresholds)
+    threshold = fields.value(.threshold, else: threshold).map { clamped($0, Self.thresholds) }
     let count = fields.value(.topK, else: topK)
     topK = min(max(count, Self.counts.lowerBound), Self.counts.upperBound)
   }

@@ -32,10 +32,13 @@ public final class SearchModel {
   public var settings = SearchSettings() { didSet { refresh() } }
   public private(set) var results: [Result] = []
   public private(set) var isSearching = false
+  /// `nil` before models were loaded.
+  private var modelThreshold: Double?
 
   @ObservationIgnored private let engine: any Engine
   @ObservationIgnored private let modelFolder: @MainActor () -> URL?
   @ObservationIgnored private let selection: SelectionModel
+  @ObservationIgnored private let cache: URL
   @ObservationIgnored private let pause: @Sendable () async throws -> Void
   @ObservationIgnored private var searcher: (any SearchEngine)?
   @ObservationIgnored private var index: SearchIndex?
@@ -46,9 +49,11 @@ public final class SearchModel {
   @ObservationIgnored private var query: Task<Void, Never>?
   @ObservationIgnored var didFail: @MainActor (any Error) -> Void = { _ in }
 
-  /// `pause` is waited for before a text is searched, so that fast typing costs one search.
+  /// `cache` is where embeddings are kept. `pause` is waited for before a text is searched, so that
+  /// fast typing costs one search.
   public init(
     engine: any Engine, models: @escaping @MainActor () -> URL?, selection: SelectionModel,
+    cache: URL = StandardFolders.caches.appending(path: "Embeddings"),
     pause: @escaping @Sendable () async throws -> Void = {
       try await Task.sleep(for: .milliseconds(150))
     }
@@ -56,7 +61,14 @@ public final class SearchModel {
     self.engine = engine
     modelFolder = models
     self.selection = selection
+    self.cache = cache
     self.pause = pause
+  }
+
+  /// Lowest score that counts as a match: a person's choice, else the models' own.
+  public var lowestScore: Double {
+    get { settings.threshold ?? modelThreshold ?? SearchSettings.thresholds.lowerBound }
+    set { settings.threshold = newValue }
   }
 
   public var canEncode: Bool { scene != nil && encoding == nil && !selection.rows.isEmpty }
@@ -92,7 +104,7 @@ public final class SearchModel {
     work = Task {
       do {
         let searcher = try await loadedSearcher()
-        let index = try await searcher.encode(scene, renderer: renderer, cache: Self.cacheFolder)
+        let index = try await searcher.encode(scene, renderer: renderer, cache: cache)
           .result { self.encoding = $0 }
         guard self.renderer === renderer else { return }
         self.index = index
@@ -116,10 +128,6 @@ public final class SearchModel {
     await query?.value
   }
 
-  private static var cacheFolder: URL {
-    StandardFolders.caches.appending(path: "Embeddings")
-  }
-
   private func loadedSearcher() async throws -> any SearchEngine {
     if let searcher { return searcher }
     guard let folder = modelFolder() else {
@@ -130,6 +138,7 @@ public final class SearchModel {
       let loaded: any SearchEngine = try await engine.makeSearcher(models: folder)
         .result { self.models = .loading($0) }
       searcher = loaded
+      modelThreshold = loaded.threshold
       models = .ready(name: loaded.modelName)
       return loaded
     } catch {
@@ -190,7 +199,7 @@ public final class SearchModel {
     let scope = scopedClusters
     results =
       hits
-      .filter { scope.contains($0.cluster) && $0.score >= settings.threshold }
+      .filter { scope.contains($0.cluster) && $0.score >= lowestScore }
       .prefix(settings.topK)
       .compactMap { hit in
         selection.row(hit.cluster).map {

@@ -79,6 +79,7 @@ import TrapezeBridge
       _ = try await Engines.cpu.makeSearcher(models: folder.url).result()
     }
     #expect(missing?.code == .modelsMissing)
+    #expect(missing?.message.contains("model.json") == true)
   }
 
   @Test func theCpuHasNoKernelsToCheck() async throws {

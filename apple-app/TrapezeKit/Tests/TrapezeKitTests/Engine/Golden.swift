@@ -8,6 +8,7 @@ enum Repository {
     .appending(path: "../../../../..").standardizedFileURL
   static let sampleScene = root.appending(path: "assets/sample-scene")
   static let sampleDataset = root.appending(path: "assets/sample-dataset/transforms_static.json")
+  static let searchModel = root.appending(path: "assets/search-model")
   static let goldens = root.appending(path: "tests/goldens/sample-scene")
 }
 

@@ -17,9 +17,9 @@ struct SearchPanel: View {
           ForEach(SearchSettings.Scope.allCases) { Text($0.title).tag($0) }
         }
         LabeledContent {
-          Text(verbatim: Figures.decimal(search.settings.threshold, digits: 2)).monospacedDigit()
+          Text(verbatim: Figures.decimal(search.lowestScore, digits: 2)).monospacedDigit()
         } label: {
-          Slider(value: $search.settings.threshold, in: SearchSettings.thresholds, step: 0.01) {
+          Slider(value: $search.lowestScore, in: SearchSettings.thresholds, step: 0.01) {
             Text("Lowest score")
           }
         }
