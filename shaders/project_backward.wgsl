@@ -1,7 +1,7 @@
 // The mirror of stage 2: sums over the pixels of each splat → ∂L/∂(position, log-scale, quaternion).
 //
 // Needs: common/dispatch, common/frame, common/numbers, common/projection, common/activation,
-// common/splat_count.
+// common/rotation, common/splat_count.
 //
 // One thread per splat. The plain twin is `Projection::project_backward` of the f64 reference;
 // what comes through the colour is added by color_backward.wgsl.
@@ -21,8 +21,6 @@
 @group(0) @binding(10) var<storage, read_write> by_rotations: array<vec4<f32>>;
 
 const LN_2: f32 = 0.69314718;
-/// Quaternions shorter than this get no gradient.
-const MIN_TRAINED_ROTATION_LENGTH: f32 = 1e-12;
 
 struct Geometry {
     position: vec3<f32>,
@@ -155,12 +153,4 @@ fn rotation_backward(
         x * shear.z + z * shear.x + w * turn.y - 2.0 * y * (g0.x + g2.z),
         x * shear.y + y * shear.x + w * turn.z - 2.0 * z * (g0.x + g1.y),
     );
-}
-
-/// ∂L/∂q from ∂L/∂(q / ‖q‖): what is along q has no effect.
-fn unit_backward(unit: UnitRotation, by_unit: vec4<f32>) -> vec4<f32> {
-    if (unit.length < MIN_TRAINED_ROTATION_LENGTH) {
-        return vec4<f32>(0.0);
-    }
-    return (by_unit - dot(unit.rotation, by_unit) * unit.rotation) / unit.length;
 }

@@ -1,7 +1,7 @@
 // Stage 2 in training: from stored parameters to ellipses on the image.
 //
 // Needs: common/dispatch, common/frame, common/numbers, common/projection, common/activation,
-// common/splat_count.
+// common/rotation, common/splat_count.
 //
 // One thread per splat that there is room for. The twin of project.wgsl for splats that change
 // with every frame; colours are a kernel of their own (color_parameters.wgsl), so that both stay

@@ -47,21 +47,3 @@ fn transparency_of(logit: f32) -> f32 {
     let tail = natural_exp(-abs(logit));
     return select(1.0, tail, logit > 0.0) / (1.0 + tail);
 }
-
-/// q / ‖q‖ and ‖q‖; the identity and 0 where q has no direction.
-struct UnitRotation {
-    rotation: vec4<f32>,
-    length: f32,
-}
-
-fn unit_rotation(q: vec4<f32>) -> UnitRotation {
-    let largest = max(max(abs(q.x), abs(q.y)), max(abs(q.z), abs(q.w)));
-    let finite = is_finite(q.x) && is_finite(q.y) && is_finite(q.z) && is_finite(q.w);
-    if (!finite || !(largest > 0.0)) {
-        return UnitRotation(vec4<f32>(1.0, 0.0, 0.0, 0.0), 0.0);
-    }
-    // Divided by the largest component first: squares of what a file can hold leave f32.
-    let scaled = q / largest;
-    let norm = sqrt(dot(scaled, scaled));
-    return UnitRotation(scaled / norm, norm * largest);
-}

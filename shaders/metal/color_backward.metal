@@ -62,11 +62,6 @@ struct SplatCount {
 struct type_8 {
     float inner[2880];
 };
-struct UnitRotation {
-    metal::float4 rotation;
-    float length;
-    char _pad2[12];
-};
 struct type_9 {
     uint inner[64];
 };
@@ -590,50 +585,6 @@ float transparency_of(
     return ((logit_1 > 0.0) ? _e3 : 1.0) / (1.0 + _e3);
 }
 
-UnitRotation unit_rotation(
-    metal::float4 q_1
-) {
-    bool local_10 = {};
-    bool local_11 = {};
-    bool local_12 = {};
-    bool local_13 = {};
-    float largest_1 = metal::max(metal::max(metal::abs(q_1.x), metal::abs(q_1.y)), metal::max(metal::abs(q_1.z), metal::abs(q_1.w)));
-    bool _e13 = is_finite(q_1.x);
-    if (_e13) {
-        bool _e17 = is_finite(q_1.y);
-        local_10 = _e17;
-    } else {
-        local_10 = false;
-    }
-    bool _e19 = local_10;
-    if (_e19) {
-        bool _e23 = is_finite(q_1.z);
-        local_11 = _e23;
-    } else {
-        local_11 = false;
-    }
-    bool _e25 = local_11;
-    if (_e25) {
-        bool _e29 = is_finite(q_1.w);
-        local_12 = _e29;
-    } else {
-        local_12 = false;
-    }
-    bool finite_1 = local_12;
-    if (!(!(finite_1))) {
-        local_13 = !((largest_1 > 0.0));
-    } else {
-        local_13 = true;
-    }
-    bool _e40 = local_13;
-    if (_e40) {
-        return UnitRotation {metal::float4(1.0, 0.0, 0.0, 0.0), 0.0};
-    }
-    metal::float4 scaled_1 = q_1 / metal::float4(largest_1);
-    float norm = metal::sqrt(metal::dot(scaled_1, scaled_1));
-    return UnitRotation {scaled_1 / metal::float4(norm), norm * largest_1};
-}
-
 void stage_rest(
     uint group_1,
     uint thread_1,
@@ -790,21 +741,21 @@ metal::float3 bands_backward(
 bool is_free(
     float channel
 ) {
-    bool local_14 = {};
-    bool local_15 = {};
+    bool local_10 = {};
+    bool local_11 = {};
     if (channel > 0.0) {
-        local_14 = channel < MAX_CHANNEL;
+        local_10 = channel < MAX_CHANNEL;
     } else {
-        local_14 = false;
+        local_10 = false;
     }
-    bool _e8 = local_14;
+    bool _e8 = local_10;
     if (_e8) {
         bool _e11 = is_nan(channel);
-        local_15 = !(_e11);
+        local_11 = !(_e11);
     } else {
-        local_15 = false;
+        local_11 = false;
     }
-    bool _e14 = local_15;
+    bool _e14 = local_11;
     return _e14;
 }
 
@@ -821,7 +772,7 @@ type_13 seen_backward(
     constant _mslBufferSizes& _buffer_sizes
 ) {
     metal::float3 by_position = metal::float3(0.0);
-    bool local_16 = {};
+    bool local_12 = {};
     metal::float3 _e3 = load_dc(splat_1, sh_dc, _buffer_sizes);
     staged_dc = _e3;
     float _e8 = positions[3u * splat_1];
@@ -842,11 +793,11 @@ type_13 seen_backward(
     float length = metal::dot(_e24, _e25);
     if (length > 0.0) {
         bool _e55 = is_finite(length);
-        local_16 = _e55;
+        local_12 = _e55;
     } else {
-        local_16 = false;
+        local_12 = false;
     }
-    bool _e57 = local_16;
+    bool _e57 = local_12;
     if (_e57) {
         by_position = (_e46 - (metal::dot(_e25, _e46) * _e25)) / metal::float3(length);
     }
@@ -865,7 +816,7 @@ void unstage_rest(
 ) {
     uint i_1 = {};
     float value = {};
-    bool local_17 = {};
+    bool local_13 = {};
     uint _e4 = splats.degree;
     uint _e5 = rest_floats(_e4);
     uint _e8 = splats.stored_degree;
@@ -895,11 +846,11 @@ void unstage_rest(
             value = 0.0;
             uint _e37 = staged_wanted.inner[at_7];
             if (_e37 != 0u) {
-                local_17 = float_ < _e5;
+                local_13 = float_ < _e5;
             } else {
-                local_17 = false;
+                local_13 = false;
             }
-            bool _e44 = local_17;
+            bool _e44 = local_13;
             if (_e44) {
                 float _e49 = staged_rest.inner[(at_7 * _e5) + float_];
                 value = _e49;

@@ -88,8 +88,8 @@ constant float LOG2_255_ = 7.9943533;
 constant float FACTOR_SCALE = 0.8493218;
 constant float LOG2_E = 1.442695;
 constant float MAX_SCALE = 1000000000000.0;
-constant float LN_2_ = 0.6931472;
 constant float MIN_TRAINED_ROTATION_LENGTH = 0.000000000001;
+constant float LN_2_ = 0.6931472;
 
 uint flat_group(
     metal::uint3 group_1,
@@ -489,12 +489,6 @@ UnitRotation unit_rotation(
     return UnitRotation {scaled / metal::float4(norm), norm * largest};
 }
 
-uint rest_floats(
-    uint degree
-) {
-    return 3u * (((degree + 1u) * (degree + 1u)) - 1u);
-}
-
 metal::float4 unit_backward(
     UnitRotation unit,
     metal::float4 by_unit
@@ -503,6 +497,12 @@ metal::float4 unit_backward(
         return metal::float4(0.0);
     }
     return (by_unit - (metal::dot(unit.rotation, by_unit) * unit.rotation)) / metal::float4(unit.length);
+}
+
+uint rest_floats(
+    uint degree
+) {
+    return 3u * (((degree + 1u) * (degree + 1u)) - 1u);
 }
 
 metal::float4 rotation_backward(

@@ -76,6 +76,7 @@ constant float LOG2_255_ = 7.9943533;
 constant float FACTOR_SCALE = 0.8493218;
 constant float LOG2_E = 1.442695;
 constant float MAX_SCALE = 1000000000000.0;
+constant float MIN_TRAINED_ROTATION_LENGTH = 0.000000000001;
 constant uint NO_SLOT = 4294967295u;
 
 uint flat_group(
@@ -474,6 +475,16 @@ UnitRotation unit_rotation(
     metal::float4 scaled = q_1 / metal::float4(largest);
     float norm = metal::sqrt(metal::dot(scaled, scaled));
     return UnitRotation {scaled / metal::float4(norm), norm * largest};
+}
+
+metal::float4 unit_backward(
+    UnitRotation unit,
+    metal::float4 by_unit
+) {
+    if (unit.length < MIN_TRAINED_ROTATION_LENGTH) {
+        return metal::float4(0.0);
+    }
+    return (by_unit - (metal::dot(unit.rotation, by_unit) * unit.rotation)) / metal::float4(unit.length);
 }
 
 uint rest_floats(

@@ -46,6 +46,18 @@ pub enum GpuError {
         /// Value of the network.
         found: usize,
     },
+    /// The deformation network has a form that the kernels do not train.
+    #[error(
+        "training a deformation network on the GPU: {what}: expected {expected}, found {found}"
+    )]
+    Untrainable {
+        /// Which property.
+        what: &'static str,
+        /// What can be trained.
+        expected: &'static str,
+        /// Value of the network.
+        found: String,
+    },
     /// A window cannot be drawn into, or not any more.
     #[error("surface: expected {expected}, found {found}")]
     Surface {

@@ -7,6 +7,7 @@ use trapeze_scene::ShDegree;
 
 use crate::deform::NetworkPrecision;
 use crate::differentiable::DifferentiableKernels;
+use crate::differentiable_deformation::DeformationKernels;
 use crate::harmonics::HarmonicsStorage;
 use crate::kernel::{Binding, Interface};
 use crate::sort::SortKernels;
@@ -28,6 +29,7 @@ pub(crate) struct Kernels {
     deform_half: OnceLock<Interface>,
     deform_matrix: OnceLock<(Interface, wgpu::ComputePipeline)>,
     differentiable: OnceLock<DifferentiableKernels>,
+    deformation: OnceLock<DeformationKernels>,
 }
 
 /// Bindings of the network's kernels.
@@ -92,6 +94,7 @@ impl Kernels {
             deform_half: OnceLock::new(),
             deform_matrix: OnceLock::new(),
             differentiable: OnceLock::new(),
+            deformation: OnceLock::new(),
         }
     }
 
@@ -142,6 +145,11 @@ impl Kernels {
     /// The passes over trainable parameters.
     pub(crate) fn differentiable(&self, gpu: &Gpu) -> &DifferentiableKernels {
         self.differentiable.get_or_init(|| DifferentiableKernels::new(gpu))
+    }
+
+    /// The passes over a network under training.
+    pub(crate) fn deformation(&self, gpu: &Gpu) -> &DeformationKernels {
+        self.deformation.get_or_init(|| DeformationKernels::new(gpu))
     }
 
     /// The network on cooperative matrices; only for devices that have them.

@@ -118,6 +118,35 @@ pub(crate) struct Deformation {
     pub padding_2: u32,
 }
 
+/// `NetworkChunk` of common/network.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct NetworkChunk {
+    pub first: u32,
+    pub splats: u32,
+    pub steps: u32,
+    pub starts_sum: u32,
+    pub octaves: u32,
+    pub time_features: u32,
+    pub encoding_row: u32,
+    pub row_vectors: u32,
+    pub time: [[f32; 4]; 13],
+}
+
+/// `NetworkLayer` of common/network.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct NetworkLayer {
+    pub inputs: u32,
+    pub outputs: u32,
+    pub input_row: u32,
+    pub output_row: u32,
+    pub weights: u32,
+    pub encoded_inputs: u32,
+    pub row_vectors: u32,
+    pub most_parts: u32,
+}
+
 /// `Presentation` of present.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -246,6 +275,31 @@ mod tests {
             network_splats,
             padding_1,
             padding_2,
+        );
+        assert_same_layout!(
+            shaders::network::ENCODE,
+            NetworkChunk,
+            first,
+            splats,
+            steps,
+            starts_sum,
+            octaves,
+            time_features,
+            encoding_row,
+            row_vectors,
+            time,
+        );
+        assert_same_layout!(
+            shaders::network::LAYER,
+            NetworkLayer,
+            inputs,
+            outputs,
+            input_row,
+            output_row,
+            weights,
+            encoded_inputs,
+            row_vectors,
+            most_parts,
         );
         assert_same_layout!(shaders::PRESENT, Presentation, background, image, texture);
         assert_same_layout!(

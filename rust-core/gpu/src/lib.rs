@@ -7,6 +7,7 @@ mod context;
 mod deform;
 mod device_report;
 mod differentiable;
+mod differentiable_deformation;
 mod error;
 mod harmonics;
 mod kernel;
@@ -34,6 +35,7 @@ pub use device_report::DeviceReport;
 pub use differentiable::{
     DifferentiableRenderer, ForwardSettings, FrameStatus, ImageGradientBuffers, PassTimes,
 };
+pub use differentiable_deformation::DifferentiableDeformation;
 pub use error::GpuError;
 pub use harmonics::HarmonicsStorage;
 pub use memory::{MemoryPlan, MemoryRequest, PlannedBuffer, SceneSize};

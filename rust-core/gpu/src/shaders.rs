@@ -1,6 +1,7 @@
 //! The WGSL sources, put together: WGSL has no include, so a stage's source is its common files
 //! followed by its own.
 
+pub mod network;
 pub mod training;
 
 /// A shader: its name, and the files that make it.
@@ -58,6 +59,10 @@ pub mod common {
     pub const NUMBERED_ENTRIES: &str = wgsl!("common/numbered_entries");
     /// From stored parameters to what they stand for.
     pub const ACTIVATION: &str = wgsl!("common/activation");
+    /// Quaternions of any length.
+    pub const ROTATION: &str = wgsl!("common/rotation");
+    /// exp, ln and the logistic function to a few ulp.
+    pub const EXPONENTIAL: &str = wgsl!("common/exponential");
     /// How many trainable splats there are.
     pub const SPLAT_COUNT: &str = wgsl!("common/splat_count");
     /// Coefficients of 64 splats in workgroup memory.
@@ -72,7 +77,7 @@ pub mod common {
 
 use common::{
     ACTIVATION, BLEND, COUNTERS, DEFORM_SPLAT, DEFORMATION, DISPATCH, ENTRIES, FRAME, HARMONICS,
-    NUMBERED_ENTRIES, NUMBERS, PROJECTION, REGION, SCAN, SPLAT_COUNT, STAGED_HARMONICS,
+    NUMBERED_ENTRIES, NUMBERS, PROJECTION, REGION, ROTATION, SCAN, SPLAT_COUNT, STAGED_HARMONICS,
     TRIGONOMETRY,
 };
 
@@ -165,6 +170,7 @@ pub const PROJECT_PARAMETERS: Shader = Shader {
         NUMBERS,
         PROJECTION,
         ACTIVATION,
+        ROTATION,
         SPLAT_COUNT,
         wgsl!("project_parameters"),
     ],
@@ -206,6 +212,7 @@ pub const PROJECT_BACKWARD: Shader = Shader {
         NUMBERS,
         PROJECTION,
         ACTIVATION,
+        ROTATION,
         SPLAT_COUNT,
         wgsl!("project_backward"),
     ],
@@ -254,7 +261,7 @@ pub const OPTIONAL: [Shader; 2] = [DEFORM_HALF, DEFORM_MATRIX];
 /// All shaders: what is validated and translated to Metal.
 #[cfg(test)]
 pub(crate) fn every_shader() -> impl Iterator<Item = Shader> {
-    ALL.into_iter().chain(OPTIONAL).chain(training::ALL)
+    ALL.into_iter().chain(OPTIONAL).chain(network::ALL).chain(training::ALL)
 }
 
 /// The common files behind the positional encoding, for its test.

@@ -22,7 +22,8 @@ fn activate(@builtin(global_invocation_id) id: vec3<u32>) {
 /// [scale, log₂ opacity, transparency, 0] and [w, x, y of the unit quaternion, length] of each.
 fn activated(stored: &[f32]) -> Option<Vec<[[f32; 4]; 2]>> {
     let gpu = device()?;
-    let source = format!("{}\n{}\n{KERNEL}", common::NUMBERS, common::ACTIVATION);
+    let parts = [common::NUMBERS, common::ACTIVATION, common::ROTATION, KERNEL];
+    let source = parts.join("\n");
     let interface = Interface::checked(&gpu, "activate", &source, &[Binding::Read, Binding::Write]);
     let pipeline = interface.pipeline(&gpu, "activate", &[]);
     let input = gpu.storage_of("stored", stored).unwrap();

@@ -3,7 +3,7 @@
 //! `trapeze-train` runs them.
 
 use super::Shader;
-use super::common::{COUNTERS, DISPATCH, NUMBERS, SCAN};
+use super::common::{COUNTERS, DISPATCH, EXPONENTIAL, NUMBERS, SCAN};
 
 macro_rules! wgsl {
     ($path:literal) => {
@@ -11,7 +11,6 @@ macro_rules! wgsl {
     };
 }
 
-const EXPONENTIAL: &str = wgsl!("common/exponential");
 const RANDOM: &str = wgsl!("common/random");
 const TRAINING: &str = wgsl!("common/training");
 const DENSIFICATION: &str = wgsl!("common/densification");

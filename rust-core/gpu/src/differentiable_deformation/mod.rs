@@ -1,0 +1,436 @@
+//! The deformation network under training, on the GPU: forward and backward, layer by layer, as
+//! products of matrices.
+//!
+//! [`DifferentiableDeformation`] stands in front of a
+//! [`DifferentiableRenderer`](crate::DifferentiableRenderer): from stored parameters it makes those of
+//! the deformed splats, which the renderer draws as it draws any others; and it carries the gradients
+//! that the renderer found for them back to the stored parameters and to the weights.
+//!
+//! Inference ([`Renderer`](crate::Renderer)) keeps the hidden vectors of 16 splats in workgroup
+//! memory from the first layer to the last. Training needs them again on the way back, and sums over
+//! all splats for the weights: so here every layer is a dispatch, and the hidden vectors are in
+//! memory, feature by feature, for a chunk of splats. What fits a byte budget is a chunk; with more
+//! than one, the backward pass evaluates the network again, chunk by chunk.
+//!
+//! The network's inputs are taken as constants: no gradient goes through γ (Deformable 3D Gaussians
+//! stops it there). Sums over splats are made in parts, added up in a fixed order: the same step has
+//! the same bits.
+//!
+//! # Floor
+//!
+//! The standard network has 503 808 weights. A splat costs 1.01 MFLOP forward, as much again for the
+//! weights' gradients, and 0.96 for those of the layers' inputs: 2.98 in all, 119 GFLOP for 40 000
+//! splats. In single precision on an H100 (67 TFLOP/s) that is 1.8 ms; the fused kernel of inference
+//! reaches 32 TFLOP/s there, which would be 3.7 ms. Memory is not the limit: a hidden layer reads and
+//! writes 1 KiB a splat three times, 40 000 splats × 8 layers are 1 GB, 0.3 ms at 3.3 TB/s. 27
+//! dispatches behind each other cost about 0.1 ms. Prediction: 4 to 5 ms.
+
+mod bindings;
+mod kernels;
+mod network_layout;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use kernels::DeformationKernels;
+
+use trapeze_scene::{DeformationNetwork, SceneError};
+
+use crate::layout::{NetworkChunk, NetworkLayer};
+use crate::stage_pass::{Groups, dispatch};
+use crate::{Gpu, GpuError, ParameterBuffers, readback};
+use bindings::{BackwardBindings, ForwardBindings, LayerBindings};
+use kernels::Kernel;
+use network_layout::{NetworkLayout, STEP, TILE};
+
+/// Bytes between two uniform blocks: the largest alignment that a device may ask for.
+const BLOCK_STRIDE: u32 = 256;
+
+/// A deformation network on the device, with the gradients of its parameters.
+///
+/// The uniform blocks of an evaluation are written when it is recorded: one submission holds one
+/// [`forward`](Self::forward), and at most one [`backward`](Self::backward) after it. In the steady
+/// state recording creates nothing.
+#[derive(Debug)]
+pub struct DifferentiableDeformation {
+    gpu: Gpu,
+    layout: NetworkLayout,
+    /// Splats that there is room for.
+    capacity: u32,
+    /// Columns of the activations: the most splats of a chunk.
+    columns: u32,
+    buffers: NetworkBuffers,
+    layers: Vec<LayerBindings>,
+    forward: Option<ForwardBindings>,
+    backward: Option<BackwardBindings>,
+    /// Splats of the evaluation that was recorded last.
+    evaluated: Option<u32>,
+}
+
+/// What does not depend on whose splats are deformed.
+#[derive(Debug)]
+struct NetworkBuffers {
+    parameters: wgpu::Buffer,
+    gradients: wgpu::Buffer,
+    activations: wgpu::Buffer,
+    parts: wgpu::Buffer,
+    /// One block per chunk.
+    chunks: wgpu::Buffer,
+    /// One block per layer.
+    layers: wgpu::Buffer,
+    deformed_positions: wgpu::Buffer,
+    deformed_log_scales: wgpu::Buffer,
+    deformed_rotations: wgpu::Buffer,
+}
+
+/// A run of splats that are evaluated together.
+#[derive(Clone, Copy, Debug)]
+struct Chunk {
+    index: u32,
+    first: u32,
+    splats: u32,
+    /// Columns that are computed: a multiple of [`TILE`].
+    columns: u32,
+}
+
+impl Chunk {
+    /// Offset of its uniform block.
+    fn offset(self) -> u32 {
+        self.index * BLOCK_STRIDE
+    }
+
+    fn steps(self) -> u32 {
+        self.columns / STEP
+    }
+}
+
+impl DifferentiableDeformation {
+    /// Room for `capacity` splats, with activations of at most `activation_budget` bytes (those of
+    /// 128 splats at least). The parameters are those of `network`, the gradients zero.
+    ///
+    /// # Errors
+    /// [`GpuError::Untrainable`] names what the kernels do not train (time networks, screw motions,
+    /// rotations that stay unnormalised, widths that are no multiple of four);
+    /// [`GpuError::OutOfMemory`] when the device has no room.
+    pub fn new(
+        gpu: &Gpu,
+        network: &DeformationNetwork,
+        parameters: &[f32],
+        capacity: u32,
+        activation_budget: u64,
+    ) -> Result<Self, GpuError> {
+        let mut layout = NetworkLayout::new(network)?;
+        let columns = columns_within(&layout, capacity, activation_budget.min(gpu.max_binding()));
+        layout.layers.iter_mut().for_each(|layer| layer.row_vectors = columns / 4);
+        let buffers = NetworkBuffers::new(gpu, &layout, capacity, columns)?;
+        let kernels = gpu.kernels().deformation(gpu);
+        let bind = |i| LayerBindings::new(gpu, kernels, &buffers, i as u32);
+        let layers = (0..layout.layers.len()).map(bind).collect();
+        let this = Self {
+            gpu: gpu.clone(),
+            capacity,
+            columns,
+            layers,
+            forward: None,
+            backward: None,
+            evaluated: None,
+            buffers,
+            layout,
+        };
+        this.write(parameters)?;
+        Ok(this)
+    }
+
+    /// Bytes that it takes on a device whose bindings are large enough.
+    ///
+    /// # Errors
+    /// [`GpuError::Untrainable`] as for [`new`](Self::new).
+    pub fn bytes(
+        network: &DeformationNetwork,
+        capacity: u32,
+        activation_budget: u64,
+    ) -> Result<u64, GpuError> {
+        let layout = NetworkLayout::new(network)?;
+        let columns = u64::from(columns_within(&layout, capacity, activation_budget));
+        let deformed = u64::from(capacity) * DEFORMED_BYTES;
+        let parameters = 2 * 4 * layout.parameters as u64;
+        Ok(columns * layout.column_bytes() + layout.parts_bytes() + deformed + parameters)
+    }
+
+    /// Whether it can take the parameters of this network, for so many splats.
+    #[must_use]
+    pub fn fits(&self, network: &DeformationNetwork, capacity: u32) -> bool {
+        let mut layout = self.layout.clone();
+        layout.layers.iter_mut().for_each(|layer| layer.row_vectors = 0);
+        capacity <= self.capacity && layout.fits(network)
+    }
+
+    /// The weights and biases: [`parameter_count`](Self::parameter_count) floats, in an order of its
+    /// own (see [`pack`](Self::pack)).
+    #[must_use]
+    pub fn parameters(&self) -> &wgpu::Buffer {
+        &self.buffers.parameters
+    }
+
+    /// ∂L/∂ each of the [`parameters`](Self::parameters), after [`backward`](Self::backward).
+    #[must_use]
+    pub fn gradients(&self) -> &wgpu::Buffer {
+        &self.buffers.gradients
+    }
+
+    /// Floats of the parameters on the device; a few of them are padding, and stay zero.
+    #[must_use]
+    pub fn parameter_count(&self) -> u32 {
+        self.layout.parameters as u32
+    }
+
+    /// Brings one number per parameter, in the order of `weights.bin`, into the order on the device.
+    #[must_use]
+    pub fn pack(&self, parameters: &[f32]) -> Vec<f32> {
+        self.layout.pack(parameters)
+    }
+
+    /// The inverse of [`pack`](Self::pack).
+    #[must_use]
+    pub fn unpack(&self, packed: &[f32]) -> Vec<f32> {
+        self.layout.unpack(packed)
+    }
+
+    /// Replaces the parameters, given in the order of `weights.bin`.
+    ///
+    /// # Errors
+    /// [`GpuError::Device`] when the device is lost.
+    pub fn write(&self, parameters: &[f32]) -> Result<(), GpuError> {
+        self.gpu.write(&self.buffers.parameters, &self.pack(parameters))
+    }
+
+    /// The parameters in the order of `weights.bin`, and waits for them.
+    ///
+    /// # Errors
+    /// [`GpuError::Device`] when the device is lost.
+    pub fn read(&self) -> Result<Vec<f32>, GpuError> {
+        self.read_packed(&self.buffers.parameters)
+    }
+
+    /// Any buffer with one float per parameter, in the order of `weights.bin`, and waits for it.
+    ///
+    /// # Errors
+    /// [`GpuError::Device`] when the device is lost.
+    pub fn read_packed(&self, buffer: &wgpu::Buffer) -> Result<Vec<f32>, GpuError> {
+        let packed = readback::read(&self.gpu, buffer, u64::from(self.parameter_count()))?;
+        Ok(self.unpack(&packed))
+    }
+
+    /// The deformed splats, after [`forward`](Self::forward): centres, log-scales and rotations of
+    /// its own, opacities and colours shared with the canonical ones.
+    #[must_use]
+    pub fn deformed(&self, canonical: &ParameterBuffers) -> ParameterBuffers {
+        ParameterBuffers {
+            positions: self.buffers.deformed_positions.clone(),
+            log_scales: self.buffers.deformed_log_scales.clone(),
+            rotations: self.buffers.deformed_rotations.clone(),
+            ..canonical.clone()
+        }
+    }
+
+    /// Records deforming the splats to a time. Time NaN or infinite is 0.
+    ///
+    /// # Errors
+    /// [`GpuError::OutOfMemory`] when there are more splats than it has room for.
+    pub fn forward(
+        &mut self,
+        pass: &mut wgpu::ComputePass<'_>,
+        canonical: &ParameterBuffers,
+        time: f32,
+    ) -> Result<(), GpuError> {
+        self.evaluated = None;
+        if canonical.capacity > self.capacity {
+            let bytes = |splats| u64::from(splats) * DEFORMED_BYTES;
+            let (need, have) = (bytes(canonical.capacity), bytes(self.capacity));
+            return Err(GpuError::OutOfMemory { what: "deformed splats", need, have });
+        }
+        self.write_chunks(canonical.count, time);
+        let bound = self.forward.take().filter(|bound| bound.are_of(canonical));
+        let kernels = self.gpu.kernels().deformation(&self.gpu);
+        let make = || ForwardBindings::new(&self.gpu, kernels, &self.buffers, canonical);
+        let bound = self.forward.insert(bound.unwrap_or_else(make));
+        for chunk in chunks(canonical.count, self.columns) {
+            record_hidden(kernels, &self.layers, &self.layout, bound, chunk, pass);
+            set(pass, &kernels.apply, &bound.apply, &[chunk.offset()]);
+            dispatch(pass, Groups::Direct(chunk.splats.div_ceil(64)));
+        }
+        self.evaluated = Some(canonical.count);
+        Ok(())
+    }
+
+    /// Records the vector–Jacobian product of the last [`forward`](Self::forward): turns `gradients`,
+    /// which are by the deformed parameters, into those by the canonical ones, in place, and writes
+    /// those by the network's parameters.
+    ///
+    /// # Errors
+    /// [`GpuError::Scene`] when the splats are not those of the last forward pass.
+    pub fn backward(
+        &mut self,
+        pass: &mut wgpu::ComputePass<'_>,
+        canonical: &ParameterBuffers,
+        gradients: &ParameterBuffers,
+    ) -> Result<(), GpuError> {
+        let evaluated = self.evaluated.take();
+        let forward = self.forward.as_ref().filter(|bound| bound.are_of(canonical));
+        let (Some(forward), true) = (forward, evaluated == Some(canonical.count)) else {
+            return Err(GpuError::Scene(SceneError::Length {
+                field: "splats that were deformed",
+                expected: evaluated.unwrap_or(0) as usize,
+                found: canonical.count as usize,
+            }));
+        };
+        let bound = self.backward.take().filter(|bound| bound.are_of(canonical, gradients));
+        let kernels = self.gpu.kernels().deformation(&self.gpu);
+        let make =
+            || BackwardBindings::new(&self.gpu, kernels, &self.buffers, canonical, gradients);
+        let bound = self.backward.insert(bound.unwrap_or_else(make));
+        let chunks: Vec<Chunk> = chunks(canonical.count, self.columns).collect();
+        // The activations at hand are those of the last chunk.
+        for &chunk in chunks.iter().rev() {
+            if chunk.index + 1 < chunks.len() as u32 {
+                record_hidden(kernels, &self.layers, &self.layout, forward, chunk, pass);
+            }
+            set(pass, &kernels.apply_backward, &bound.apply, &[chunk.offset()]);
+            dispatch(pass, Groups::Direct(chunk.columns.div_ceil(64)));
+            for (layer, bindings) in self.layout.layers.iter().zip(&self.layers).rev() {
+                record_backward(kernels, layer, bindings, chunk, pass);
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes the uniform blocks of an evaluation.
+    fn write_chunks(&self, splats: u32, time: f32) {
+        let base = self.layout.chunk_at(time);
+        let count = splats.div_ceil(self.columns).max(1);
+        let mut blocks = vec![0; (count * BLOCK_STRIDE) as usize];
+        let slots = blocks.chunks_exact_mut(BLOCK_STRIDE as usize);
+        for (slot, chunk) in slots.zip(chunks(splats, self.columns)) {
+            let block = NetworkChunk {
+                first: chunk.first,
+                splats: chunk.splats,
+                steps: chunk.steps(),
+                // The last chunk is the first on the way back.
+                starts_sum: u32::from(chunk.index + 1 == count),
+                row_vectors: self.columns / 4,
+                ..base
+            };
+            slot[..size_of::<NetworkChunk>()].copy_from_slice(bytemuck::bytes_of(&block));
+        }
+        self.gpu.queue().write_buffer(&self.buffers.chunks, 0, &blocks);
+    }
+}
+
+impl NetworkBuffers {
+    fn new(
+        gpu: &Gpu,
+        layout: &NetworkLayout,
+        capacity: u32,
+        columns: u32,
+    ) -> Result<Self, GpuError> {
+        let chunks = capacity.div_ceil(columns).max(1) * BLOCK_STRIDE;
+        let mut layers = vec![0; layout.layers.len() * BLOCK_STRIDE as usize];
+        let slots = layers.chunks_exact_mut(BLOCK_STRIDE as usize);
+        for (slot, layer) in slots.zip(&layout.layers) {
+            slot[..size_of::<NetworkLayer>()].copy_from_slice(bytemuck::bytes_of(layer));
+        }
+        let parameter_bytes = 4 * layout.parameters as u64;
+        let activation_bytes = u64::from(columns) * layout.column_bytes();
+        let splats = u64::from(capacity);
+        for (what, need) in [
+            ("activations of 128 splats in one binding", activation_bytes),
+            ("gradients of a layer in one binding", layout.parts_bytes()),
+            ("rotations", splats * 16),
+        ] {
+            let have = gpu.max_binding();
+            if need > have {
+                return Err(GpuError::OutOfMemory { what, need, have });
+            }
+        }
+        Ok(Self {
+            parameters: gpu.storage("network", parameter_bytes)?,
+            gradients: gpu.storage("gradients of the network", parameter_bytes)?,
+            activations: gpu.storage("activations", activation_bytes)?,
+            parts: gpu.storage("parts of the network's gradients", layout.parts_bytes())?,
+            chunks: gpu.uniform_of("chunks", &vec![0; chunks as usize]),
+            layers: gpu.uniform_of("layers", &layers),
+            deformed_positions: gpu.storage("deformed positions", splats * 12)?,
+            deformed_log_scales: gpu.storage("deformed log-scales", splats * 12)?,
+            deformed_rotations: gpu.storage("deformed rotations", splats * 16)?,
+        })
+    }
+}
+
+/// Bytes of the deformed parameters of one splat.
+const DEFORMED_BYTES: u64 = 40;
+
+/// Columns of the activations: as many splats as there may be, or as fit.
+fn columns_within(layout: &NetworkLayout, capacity: u32, bytes: u64) -> u32 {
+    let wanted = u64::from(capacity.max(1)).next_multiple_of(u64::from(TILE));
+    let tiles = bytes / (layout.column_bytes() * u64::from(TILE));
+    wanted.min(tiles.max(1) * u64::from(TILE)) as u32
+}
+
+/// The splats in runs of at most `columns`; an empty run when there are none.
+fn chunks(splats: u32, columns: u32) -> impl Iterator<Item = Chunk> {
+    (0..splats.div_ceil(columns).max(1)).map(move |index| {
+        let first = index * columns;
+        let splats = (splats - first).min(columns);
+        Chunk { index, first, splats, columns: splats.max(1).next_multiple_of(TILE) }
+    })
+}
+
+fn set(
+    pass: &mut wgpu::ComputePass<'_>,
+    kernel: &Kernel,
+    bind_group: &wgpu::BindGroup,
+    offsets: &[u32],
+) {
+    pass.set_pipeline(&kernel.pipeline);
+    pass.set_bind_group(0, bind_group, offsets);
+}
+
+/// Records γ and the hidden layers of a chunk.
+fn record_hidden(
+    kernels: &DeformationKernels,
+    bindings: &[LayerBindings],
+    layout: &NetworkLayout,
+    splats: &ForwardBindings,
+    chunk: Chunk,
+    pass: &mut wgpu::ComputePass<'_>,
+) {
+    set(pass, &kernels.encode, &splats.encode, &[chunk.offset()]);
+    dispatch(pass, Groups::Direct(chunk.columns.div_ceil(64)));
+    let depth = layout.layers.len() - 1;
+    for (layer, bound) in layout.layers.iter().zip(bindings).take(depth) {
+        set(pass, &kernels.layer, &bound.forward, &[]);
+        pass.dispatch_workgroups(layer.outputs.div_ceil(TILE), chunk.columns / TILE, 1);
+    }
+}
+
+/// Records the way back through one layer, whose outputs have their gradients.
+fn record_backward(
+    kernels: &DeformationKernels,
+    layer: &NetworkLayer,
+    bound: &LayerBindings,
+    chunk: Chunk,
+    pass: &mut wgpu::ComputePass<'_>,
+) {
+    let tiles = layer.outputs.div_ceil(TILE) * layer.inputs.div_ceil(TILE);
+    // The twin of `sum_parts` in common/network.wgsl.
+    let parts = (chunk.steps() / 4).clamp(1, layer.most_parts);
+    set(pass, &kernels.weights_backward, &bound.weights_backward, &[chunk.offset()]);
+    pass.dispatch_workgroups(tiles, parts, 1);
+    set(pass, &kernels.weights_sum, &bound.weights_sum, &[chunk.offset()]);
+    let vectors = NetworkLayout::layer_floats(layer) as u32 / 4;
+    dispatch(pass, Groups::Direct(vectors.div_ceil(64)));
+    let hidden_inputs = layer.inputs - layer.encoded_inputs;
+    if hidden_inputs > 0 {
+        set(pass, &kernels.layer_backward, &bound.backward, &[]);
+        pass.dispatch_workgroups(hidden_inputs.div_ceil(TILE), chunk.columns / TILE, 1);
+    }
+}

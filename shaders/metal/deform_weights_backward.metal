@@ -1,0 +1,478 @@
+// Made from shaders/deform_weights_backward.wgsl by scripts/export-msl.
+
+// language: metal3.0
+#include <metal_stdlib>
+#include <simd/simd.h>
+
+using metal::uint;
+
+struct _mslBufferSizes {
+    uint size4;
+    uint size6;
+};
+
+struct type_2 {
+    metal::float4 inner[13];
+};
+struct NetworkChunk {
+    uint first;
+    uint splats;
+    uint steps;
+    uint starts_sum;
+    uint octaves;
+    uint time_features;
+    uint encoding_row;
+    uint row_vectors;
+    type_2 time;
+};
+struct NetworkLayer {
+    uint inputs;
+    uint outputs;
+    uint input_row;
+    uint output_row;
+    uint weights;
+    uint encoded_inputs;
+    uint row_vectors;
+    uint most_parts;
+};
+struct type_3 {
+    metal::float4 inner[512];
+};
+struct Block {
+    metal::float4 k0_;
+    metal::float4 k1_;
+    metal::float4 k2_;
+    metal::float4 k3_;
+};
+struct Tile {
+    metal::float4 a0_;
+    metal::float4 b0_;
+    metal::float4 a1_;
+    metal::float4 b1_;
+    metal::float4 a2_;
+    metal::float4 b2_;
+    metal::float4 a3_;
+    metal::float4 b3_;
+    metal::float4 a4_;
+    metal::float4 b4_;
+    metal::float4 a5_;
+    metal::float4 b5_;
+    metal::float4 a6_;
+    metal::float4 b6_;
+    metal::float4 a7_;
+    metal::float4 b7_;
+    metal::float4 loaded;
+};
+typedef metal::float4 type_6[1];
+constant uint TILE = 128u;
+constant uint TILE_VECTORS = 32u;
+constant uint STEP = 16u;
+
+uint naga_div(uint lhs, uint rhs) {
+    return lhs / metal::select(rhs, 1u, rhs == 0u);
+}
+
+uint sum_parts(
+    uint steps,
+    uint most_parts
+) {
+    return metal::clamp(naga_div(steps, 4u), 1u, most_parts);
+}
+
+Block transposed(
+    metal::float4 r0_,
+    metal::float4 r1_,
+    metal::float4 r2_,
+    metal::float4 r3_
+) {
+    metal::float4x4 columns = metal::transpose(metal::float4x4(r0_, r1_, r2_, r3_));
+    return Block {columns[0], columns[1], columns[2], columns[3]};
+}
+
+uint naga_mod(uint lhs, uint rhs) {
+    return lhs % metal::select(rhs, 1u, rhs == 0u);
+}
+
+metal::uint2 loaded_block(
+    uint thread_1
+) {
+    uint t = naga_mod(thread_1, 128u);
+    return metal::uint2(naga_mod(naga_div(t, 2u), 16u) + (16u * naga_div(t, 64u)), naga_mod(t, 2u) + (2u * naga_mod(naga_div(t, 32u), 2u)));
+}
+
+Block four_rows(
+    uint row,
+    uint column,
+    constant NetworkLayer& layer,
+    device type_6 const& activations,
+    constant _mslBufferSizes& _buffer_sizes
+) {
+    uint stride = layer.row_vectors;
+    uint at = (row * stride) + naga_div(column, 4u);
+    metal::float4 _e11 = activations[at];
+    metal::float4 _e15 = activations[at + stride];
+    metal::float4 _e21 = activations[at + (2u * stride)];
+    metal::float4 _e27 = activations[at + (3u * stride)];
+    Block _e28 = transposed(_e11, _e15, _e21, _e27);
+    return _e28;
+}
+
+Block load_left(
+    uint column_1,
+    uint row_1,
+    thread uint& first_output,
+    constant NetworkLayer& layer,
+    device type_6 const& activations,
+    constant _mslBufferSizes& _buffer_sizes
+) {
+    uint _e3 = first_output;
+    uint output = _e3 + row_1;
+    uint _e7 = layer.outputs;
+    if (output >= _e7) {
+        return Block {};
+    }
+    uint _e12 = layer.output_row;
+    Block _e14 = four_rows(_e12 + output, column_1, layer, activations, _buffer_sizes);
+    return _e14;
+}
+
+Block load_right(
+    uint column_2,
+    uint row_2,
+    constant NetworkLayer& layer,
+    device type_6 const& activations,
+    thread uint& first_input,
+    constant _mslBufferSizes& _buffer_sizes
+) {
+    uint _e3 = first_input;
+    uint input = _e3 + row_2;
+    uint _e7 = layer.inputs;
+    if (input >= _e7) {
+        return Block {};
+    }
+    uint _e12 = layer.input_row;
+    Block _e14 = four_rows(_e12 + input, column_2, layer, activations, _buffer_sizes);
+    return _e14;
+}
+
+Block load_step(
+    uint step,
+    uint thread_2,
+    thread uint& first_output,
+    constant NetworkLayer& layer,
+    device type_6 const& activations,
+    thread uint& first_input,
+    constant _mslBufferSizes& _buffer_sizes
+) {
+    metal::uint2 _e2 = loaded_block(thread_2);
+    uint contraction = (step * STEP) + (4u * _e2.y);
+    if (thread_2 < 128u) {
+        Block _e14 = load_left(contraction, 4u * _e2.x, first_output, layer, activations, _buffer_sizes);
+        return _e14;
+    }
+    Block _e18 = load_right(contraction, 4u * _e2.x, layer, activations, first_input, _buffer_sizes);
+    return _e18;
+}
+
+void store_step(
+    Block block,
+    uint thread_3,
+    threadgroup type_3& left,
+    threadgroup type_3& right
+) {
+    metal::uint2 _e2 = loaded_block(thread_3);
+    uint at_1 = ((4u * _e2.y) * TILE_VECTORS) + _e2.x;
+    if (thread_3 < 128u) {
+        left.inner[at_1] = block.k0_;
+        left.inner[at_1 + TILE_VECTORS] = block.k1_;
+        left.inner[at_1 + 64u] = block.k2_;
+        left.inner[at_1 + 96u] = block.k3_;
+        return;
+    } else {
+        right.inner[at_1] = block.k0_;
+        right.inner[at_1 + TILE_VECTORS] = block.k1_;
+        right.inner[at_1 + 64u] = block.k2_;
+        right.inner[at_1 + 96u] = block.k3_;
+        return;
+    }
+}
+
+metal::uint2 tile_place(
+    uint thread_4
+) {
+    return metal::uint2(naga_div(thread_4, 16u), naga_mod(thread_4, 16u));
+}
+
+void multiply_add(
+    thread Tile& tile,
+    metal::uint2 place,
+    threadgroup type_3& left,
+    threadgroup type_3& right
+) {
+    uint k = 0u;
+    bool loop_init = true;
+    while(true) {
+        if (!loop_init) {
+            uint _e140 = k;
+            k = _e140 + 1u;
+        }
+        loop_init = false;
+        uint _e4 = k;
+        if (_e4 < STEP) {
+        } else {
+            break;
+        }
+        {
+            uint _e8 = k;
+            metal::float4 l = left.inner[(_e8 * TILE_VECTORS) + place.x];
+            uint _e16 = k;
+            metal::float4 m = left.inner[((_e16 * TILE_VECTORS) + place.x) + 16u];
+            uint _e26 = k;
+            metal::float4 a = right.inner[(_e26 * TILE_VECTORS) + place.y];
+            uint _e34 = k;
+            metal::float4 b = right.inner[((_e34 * TILE_VECTORS) + place.y) + 16u];
+            metal::float4 _e47 = tile.a0_;
+            tile.a0_ = metal::fma(metal::float4(l.x), a, _e47);
+            metal::float4 _e53 = tile.b0_;
+            tile.b0_ = metal::fma(metal::float4(l.x), b, _e53);
+            metal::float4 _e59 = tile.a1_;
+            tile.a1_ = metal::fma(metal::float4(l.y), a, _e59);
+            metal::float4 _e65 = tile.b1_;
+            tile.b1_ = metal::fma(metal::float4(l.y), b, _e65);
+            metal::float4 _e71 = tile.a2_;
+            tile.a2_ = metal::fma(metal::float4(l.z), a, _e71);
+            metal::float4 _e77 = tile.b2_;
+            tile.b2_ = metal::fma(metal::float4(l.z), b, _e77);
+            metal::float4 _e83 = tile.a3_;
+            tile.a3_ = metal::fma(metal::float4(l.w), a, _e83);
+            metal::float4 _e89 = tile.b3_;
+            tile.b3_ = metal::fma(metal::float4(l.w), b, _e89);
+            metal::float4 _e95 = tile.a4_;
+            tile.a4_ = metal::fma(metal::float4(m.x), a, _e95);
+            metal::float4 _e101 = tile.b4_;
+            tile.b4_ = metal::fma(metal::float4(m.x), b, _e101);
+            metal::float4 _e107 = tile.a5_;
+            tile.a5_ = metal::fma(metal::float4(m.y), a, _e107);
+            metal::float4 _e113 = tile.b5_;
+            tile.b5_ = metal::fma(metal::float4(m.y), b, _e113);
+            metal::float4 _e119 = tile.a6_;
+            tile.a6_ = metal::fma(metal::float4(m.z), a, _e119);
+            metal::float4 _e125 = tile.b6_;
+            tile.b6_ = metal::fma(metal::float4(m.z), b, _e125);
+            metal::float4 _e131 = tile.a7_;
+            tile.a7_ = metal::fma(metal::float4(m.w), a, _e131);
+            metal::float4 _e137 = tile.b7_;
+            tile.b7_ = metal::fma(metal::float4(m.w), b, _e137);
+        }
+    }
+    return;
+}
+
+Tile product(
+    uint first,
+    uint end,
+    uint thread_5,
+    threadgroup type_3& left,
+    threadgroup type_3& right,
+    thread uint& first_output,
+    constant NetworkLayer& layer,
+    device type_6 const& activations,
+    thread uint& first_input,
+    constant _mslBufferSizes& _buffer_sizes
+) {
+    Tile tile_1 = Tile {};
+    Block next = {};
+    uint step_1 = {};
+    metal::uint2 _e3 = tile_place(thread_5);
+    Block _e6 = load_step(first, thread_5, first_output, layer, activations, first_input, _buffer_sizes);
+    next = _e6;
+    step_1 = first;
+    bool loop_init_1 = true;
+    while(true) {
+        if (!loop_init_1) {
+            uint _e35 = step_1;
+            step_1 = _e35 + 1u;
+        }
+        loop_init_1 = false;
+        uint _e9 = step_1;
+        if (_e9 < end) {
+        } else {
+            break;
+        }
+        {
+            metal::threadgroup_barrier(metal::mem_flags::mem_threadgroup);
+            Block _e11 = next;
+            store_step(_e11, thread_5, left, right);
+            metal::threadgroup_barrier(metal::mem_flags::mem_threadgroup);
+            metal::float4 _e13 = tile_1.loaded;
+            metal::float4 _e15 = next.k0_;
+            metal::float4 _e17 = next.k1_;
+            metal::float4 _e20 = next.k2_;
+            metal::float4 _e22 = next.k3_;
+            tile_1.loaded = _e13 + ((_e15 + _e17) + (_e20 + _e22));
+            uint _e26 = step_1;
+            if ((_e26 + 1u) < end) {
+                uint _e30 = step_1;
+                Block _e33 = load_step(_e30 + 1u, thread_5, first_output, layer, activations, first_input, _buffer_sizes);
+                next = _e33;
+            }
+            multiply_add(tile_1, _e3, left, right);
+        }
+    }
+    Tile _e37 = tile_1;
+    return _e37;
+}
+
+void store_row(
+    uint row_3,
+    uint column_3,
+    metal::float4 value,
+    thread uint& first_output,
+    constant NetworkLayer& layer,
+    thread uint& first_input,
+    device type_6& parts,
+    thread uint& first_vector,
+    constant _mslBufferSizes& _buffer_sizes
+) {
+    bool local = {};
+    uint _e4 = first_output;
+    uint output_1 = _e4 + row_3;
+    uint _e7 = first_input;
+    uint input_1 = _e7 + column_3;
+    uint _e11 = layer.outputs;
+    if (output_1 < _e11) {
+        uint _e17 = layer.inputs;
+        local = input_1 < _e17;
+    } else {
+        local = false;
+    }
+    bool _e20 = local;
+    if (_e20) {
+        uint _e23 = first_vector;
+        uint _e26 = layer.inputs;
+        parts[_e23 + naga_div((output_1 * _e26) + input_1, 4u)] = value;
+        return;
+    } else {
+        return;
+    }
+}
+
+void store_pair(
+    uint row_4,
+    uint column_vector,
+    metal::float4 first_1,
+    metal::float4 second,
+    thread uint& first_output,
+    constant NetworkLayer& layer,
+    thread uint& first_input,
+    device type_6& parts,
+    thread uint& first_vector,
+    constant _mslBufferSizes& _buffer_sizes
+) {
+    store_row(row_4, 4u * column_vector, first_1, first_output, layer, first_input, parts, first_vector, _buffer_sizes);
+    store_row(row_4, (4u * column_vector) + 64u, second, first_output, layer, first_input, parts, first_vector, _buffer_sizes);
+    return;
+}
+
+void store_tile(
+    Tile tile_2,
+    uint thread_6,
+    thread uint& first_output,
+    constant NetworkLayer& layer,
+    thread uint& first_input,
+    device type_6& parts,
+    thread uint& first_vector,
+    constant _mslBufferSizes& _buffer_sizes
+) {
+    metal::uint2 _e2 = tile_place(thread_6);
+    store_pair(4u * _e2.x, _e2.y, tile_2.a0_, tile_2.b0_, first_output, layer, first_input, parts, first_vector, _buffer_sizes);
+    store_pair((4u * _e2.x) + 1u, _e2.y, tile_2.a1_, tile_2.b1_, first_output, layer, first_input, parts, first_vector, _buffer_sizes);
+    store_pair((4u * _e2.x) + 2u, _e2.y, tile_2.a2_, tile_2.b2_, first_output, layer, first_input, parts, first_vector, _buffer_sizes);
+    store_pair((4u * _e2.x) + 3u, _e2.y, tile_2.a3_, tile_2.b3_, first_output, layer, first_input, parts, first_vector, _buffer_sizes);
+    store_pair((4u * _e2.x) + 64u, _e2.y, tile_2.a4_, tile_2.b4_, first_output, layer, first_input, parts, first_vector, _buffer_sizes);
+    store_pair((4u * _e2.x) + 65u, _e2.y, tile_2.a5_, tile_2.b5_, first_output, layer, first_input, parts, first_vector, _buffer_sizes);
+    store_pair((4u * _e2.x) + 66u, _e2.y, tile_2.a6_, tile_2.b6_, first_output, layer, first_input, parts, first_vector, _buffer_sizes);
+    store_pair((4u * _e2.x) + 67u, _e2.y, tile_2.a7_, tile_2.b7_, first_output, layer, first_input, parts, first_vector, _buffer_sizes);
+    return;
+}
+
+void store_bias(
+    metal::float4 loaded,
+    uint thread_7,
+    threadgroup type_3& left,
+    thread uint& first_output,
+    constant NetworkLayer& layer,
+    device type_6& parts,
+    thread uint& first_vector,
+    constant _mslBufferSizes& _buffer_sizes
+) {
+    bool local_1 = {};
+    metal::threadgroup_barrier(metal::mem_flags::mem_threadgroup);
+    metal::uint2 _e2 = loaded_block(thread_7);
+    if (thread_7 < 128u) {
+        left.inner[(4u * _e2.x) + _e2.y] = loaded;
+    }
+    metal::threadgroup_barrier(metal::mem_flags::mem_threadgroup);
+    uint _e13 = first_output;
+    uint output_2 = _e13 + (4u * thread_7);
+    if (thread_7 < TILE_VECTORS) {
+        uint _e23 = layer.outputs;
+        local_1 = output_2 < _e23;
+    } else {
+        local_1 = false;
+    }
+    bool _e26 = local_1;
+    if (_e26) {
+        metal::float4 _e31 = left.inner[4u * thread_7];
+        metal::float4 _e38 = left.inner[(4u * thread_7) + 1u];
+        metal::float4 _e46 = left.inner[(4u * thread_7) + 2u];
+        metal::float4 _e53 = left.inner[(4u * thread_7) + 3u];
+        metal::float4 sum = (_e31 + _e38) + (_e46 + _e53);
+        uint _e58 = first_vector;
+        uint _e61 = layer.outputs;
+        uint _e64 = layer.inputs;
+        parts[_e58 + naga_div((_e61 * _e64) + output_2, 4u)] = sum;
+        return;
+    } else {
+        return;
+    }
+}
+
+struct deform_weights_backwardInput {
+};
+[[max_total_threads_per_threadgroup(256)]] kernel void deform_weights_backward(
+  metal::uint3 group [[threadgroup_position_in_grid]]
+, uint thread_ [[thread_index_in_threadgroup]]
+, threadgroup type_3& left
+, threadgroup type_3& right
+, constant NetworkLayer& layer [[user(fake0)]]
+, device type_6 const& activations [[user(fake0)]]
+, device type_6& parts [[user(fake0)]]
+, constant NetworkChunk& chunk [[user(fake0)]]
+, constant _mslBufferSizes& _buffer_sizes [[user(fake0)]]
+) {
+    uint first_output = {};
+    uint first_input = {};
+    uint first_vector = {};
+    uint _e4 = layer.inputs;
+    uint input_tiles = naga_div((_e4 + TILE) - 1u, TILE);
+    first_output = naga_div(group.x, input_tiles) * TILE;
+    first_input = naga_mod(group.x, input_tiles) * TILE;
+    uint _e25 = layer.outputs;
+    uint _e28 = layer.inputs;
+    uint _e32 = layer.outputs;
+    first_vector = naga_div(group.y * ((_e25 * _e28) + _e32), 4u);
+    uint _e39 = chunk.steps;
+    uint _e42 = layer.most_parts;
+    uint _e43 = sum_parts(_e39, _e42);
+    uint _e46 = chunk.steps;
+    uint _e52 = chunk.steps;
+    Tile _e58 = product(naga_div(_e46 * group.y, _e43), naga_div(_e52 * (group.y + 1u), _e43), thread_, left, right, first_output, layer, activations, first_input, _buffer_sizes);
+    store_tile(_e58, thread_, first_output, layer, first_input, parts, first_vector, _buffer_sizes);
+    if (naga_mod(group.x, input_tiles) == 0u) {
+        store_bias(_e58.loaded, thread_, left, first_output, layer, parts, first_vector, _buffer_sizes);
+        return;
+    } else {
+        return;
+    }
+}
