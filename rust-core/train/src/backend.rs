@@ -131,6 +131,13 @@ pub trait TrainingBackend {
         256 * u64::from(splats) + 64 * pixels
     }
 
+    /// Bytes of working memory that training a deformation network takes on top, for the same
+    /// estimate. The default is that of a backend which keeps the activations of every splat.
+    fn network_working_bytes(&self, splats: u32) -> u64 {
+        // Ten layers of 256 numbers.
+        10 * 256 * 4 * u64::from(splats)
+    }
+
     /// Bytes of photographs that it keeps at most, for the same estimate.
     fn target_budget(&self) -> u64 {
         u64::MAX

@@ -5,7 +5,7 @@ use trapeze_formats::dataset::{Dataset, load_image};
 use trapeze_scene::ShDegree;
 
 use crate::TrainingState;
-use crate::config::Background;
+use crate::config::{Background, DeformationTraining};
 
 /// The most splats that a search tries, if the memory allows.
 const CEILING: u64 = 2_000_000;
@@ -20,6 +20,48 @@ pub fn splat_ceiling(memory: u64, sh_degree: ShDegree) -> u32 {
     // In powers of two: the same on machines that differ by a few megabytes.
     let power = fitting.max(1).ilog2();
     (1u64 << power).min(CEILING) as u32
+}
+
+/// Share of a run in which a scene that moves warms up without time, and in which the noise of the
+/// time fades: those of Yang et al. 2023, 3 000 and 20 000 of 40 000 steps, which are also the most.
+const WARM_UP_SHARE: f64 = 3.0 / 40.0;
+const NOISY_SHARE: f64 = 0.5;
+/// Noise of the time at its first step, by the time between two photographs.
+const NOISE_OF_INTERVAL: f64 = 0.1;
+
+/// How a run of `steps` steps trains what moves: `None` where the training views show one moment.
+///
+/// Photographs with transparency are taken for rendered ones, whose times are exact. The others are
+/// frames of a video, each at a time of its own: what the network sees is that time with some noise,
+/// so that it cannot learn a pose by heart for each frame.
+///
+/// # Errors
+/// [`ReadError`] when the first photograph cannot be read.
+pub fn deformation_for_training(
+    dataset: &Dataset,
+    steps: u32,
+) -> Result<Option<DeformationTraining>, ReadError> {
+    let times = distinct_times(dataset);
+    let [first, .., last] = times[..] else { return Ok(None) };
+    let is_captured = background_for_training(dataset)? != Background::Random;
+    let interval = f64::from(last - first) / (times.len() - 1) as f64;
+    let default = DeformationTraining::default();
+    let share_of_run = |share: f64, most: u32| ((f64::from(steps) * share) as u32).min(most);
+    Ok(Some(DeformationTraining {
+        warm_up: share_of_run(WARM_UP_SHARE, default.warm_up),
+        time_noise: if is_captured { (NOISE_OF_INTERVAL * interval).min(1.0) } else { 0.0 },
+        noisy_steps: share_of_run(NOISY_SHARE, default.noisy_steps).max(1),
+        ..default
+    }))
+}
+
+/// The times of the training views, ascending, each once. Views without a time are at 0.
+pub(crate) fn distinct_times(dataset: &Dataset) -> Vec<f32> {
+    let times = dataset.training_views().map(|index| dataset.views[index].time.unwrap_or(0.0));
+    let mut times: Vec<f32> = times.collect();
+    times.sort_unstable_by(f32::total_cmp);
+    times.dedup();
+    times
 }
 
 /// Random where the first photograph has transparency: nothing may stand in for the background;

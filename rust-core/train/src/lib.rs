@@ -31,6 +31,7 @@ mod exponential;
 mod gpu_backend;
 pub mod initialise;
 pub mod loss;
+mod motion;
 mod network;
 pub mod optimizer;
 mod parameters;
@@ -42,8 +43,9 @@ mod state;
 pub mod trainer;
 
 pub use cpu_backend::{CpuBackend, CpuBackendOptions, CpuStepTimes};
-pub use defaults::{background_for_training, splat_ceiling};
+pub use defaults::{background_for_training, deformation_for_training, splat_ceiling};
 pub use gpu_backend::{GpuBackend, GpuBackendOptions, GpuMemoryPlan, GpuStepTimes};
+pub use motion::{MotionSummary, with_measured_motion};
 pub use network::{TrainedNetwork, network_parameters, set_network_parameters};
 pub use parameters::{ParameterGroup, zeros_like};
 pub use reference_backend::ReferenceBackend;

@@ -14,6 +14,8 @@ const WIDTH: usize = 256;
 const SKIP_AFTER: usize = 4;
 /// Octaves of the encodings of positions and time.
 const OCTAVES: usize = 10;
+/// Weights and biases of the standard network.
+const STANDARD_PARAMETERS: u64 = 506_378;
 
 /// A network with the state of its optimiser.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +34,41 @@ impl TrainedNetwork {
     pub fn new(network: DeformationNetwork) -> Self {
         let zeros = vec![0.0; network.parameter_count()];
         Self { network, first_moments: zeros.clone(), second_moments: zeros }
+    }
+
+    /// The standard network with nothing but zeros, moments too.
+    #[must_use]
+    pub fn zeros() -> Self {
+        Self::new(zero_network())
+    }
+
+    /// Bytes that the standard network takes with its moments.
+    #[must_use]
+    pub fn bytes() -> u64 {
+        3 * STANDARD_PARAMETERS * size_of::<f32>() as u64
+    }
+
+    /// Whether it has the shape and the rule that training gives a network, and moments of its size.
+    #[must_use]
+    pub fn is_standard(&self) -> bool {
+        let network = &self.network;
+        let count = network.parameter_count();
+        network.is_standard()
+            && network.rotation_rule == RotationRule::default()
+            && [&self.first_moments, &self.second_moments].iter().all(|m| m.len() == count)
+    }
+
+    /// Whether no splat is moved, whatever its position and time: the heads are zero.
+    #[must_use]
+    pub fn is_at_rest(&self) -> bool {
+        let position: Vec<&Linear> = match &self.network.position_head {
+            PositionHead::Translation(warp) => vec![warp],
+            PositionHead::Screw { w, v } => vec![w, v],
+        };
+        let heads = [&self.network.rotation_head, &self.network.scale_head];
+        let mut numbers =
+            position.into_iter().chain(heads).flat_map(|head| head.weight.iter().chain(&head.bias));
+        numbers.all(|&w| w == 0.0)
     }
 
     /// The standard network before its first step: hidden layers uniform in ±1/√inputs, weights and
@@ -67,6 +104,14 @@ pub fn set_network_parameters(network: &mut DeformationNetwork, parameters: &[f3
 }
 
 fn initial_network(seed: u64) -> DeformationNetwork {
+    let mut network = zero_network();
+    for (layer, hidden) in (0..).zip(&mut network.hidden) {
+        draw_uniform(seed, layer, hidden);
+    }
+    network
+}
+
+fn zero_network() -> DeformationNetwork {
     let position_encoding = Encoding { dimensions: 3, octaves: OCTAVES };
     let time_encoding = Encoding { dimensions: 1, octaves: OCTAVES };
     let inputs = position_encoding.width() + time_encoding.width();
@@ -75,35 +120,31 @@ fn initial_network(seed: u64) -> DeformationNetwork {
         _ if layer == SKIP_AFTER + 1 => inputs + WIDTH,
         _ => WIDTH,
     };
-    let head = |outputs| Linear {
-        inputs: WIDTH,
+    let zeros = |inputs: usize, outputs: usize| Linear {
+        inputs,
         outputs,
-        weight: vec![0.0; WIDTH * outputs],
+        weight: vec![0.0; inputs * outputs],
         bias: vec![0.0; outputs],
     };
     DeformationNetwork {
         position_encoding,
         time_encoding,
         time_network: None,
-        hidden: (0..HIDDEN_LAYERS).map(|l| uniform_layer(seed, l as u32, inputs_of(l))).collect(),
+        hidden: (0..HIDDEN_LAYERS).map(|l| zeros(inputs_of(l), WIDTH)).collect(),
         skip_after: SKIP_AFTER,
-        position_head: PositionHead::Translation(head(3)),
-        rotation_head: head(4),
-        scale_head: head(3),
+        position_head: PositionHead::Translation(zeros(WIDTH, 3)),
+        rotation_head: zeros(WIDTH, 4),
+        scale_head: zeros(WIDTH, 3),
         rotation_rule: RotationRule::default(),
     }
 }
 
-fn uniform_layer(seed: u64, layer: u32, inputs: usize) -> Linear {
-    let stream = Stream::new(seed, Purpose::NetworkInitialisation, layer);
-    let bound = (inputs as f32).sqrt().recip();
+fn draw_uniform(seed: u64, index: u32, layer: &mut Linear) {
+    let stream = Stream::new(seed, Purpose::NetworkInitialisation, index);
+    let bound = (layer.inputs as f32).sqrt().recip();
     let draw = |i: usize| bound * (2.0 * uniform(stream.words((i / 4) as u32)[i % 4]) - 1.0);
-    let weights = WIDTH * inputs;
-    Linear {
-        inputs,
-        outputs: WIDTH,
-        weight: (0..weights).map(draw).collect(),
-        bias: (weights..weights + WIDTH).map(draw).collect(),
+    for (i, number) in layer.weight.iter_mut().chain(&mut layer.bias).enumerate() {
+        *number = draw(i);
     }
 }
 
@@ -113,14 +154,13 @@ mod tests {
 
     #[test]
     fn a_new_network_is_the_standard_one_and_moves_nothing() {
-        let trained = TrainedNetwork::standard(3);
+        let mut trained = TrainedNetwork::standard(3);
         assert!(trained.network.is_standard());
-        assert_eq!(trained.network.parameter_count(), 506_378);
-        let PositionHead::Translation(warp) = &trained.network.position_head else { panic!() };
-        for head in [warp, &trained.network.rotation_head, &trained.network.scale_head] {
-            assert!(head.weight.iter().chain(&head.bias).all(|&w| w == 0.0));
-        }
+        assert_eq!(trained.network.parameter_count() as u64, STANDARD_PARAMETERS);
+        assert!(trained.is_standard() && trained.is_at_rest());
         assert_ne!(trained, TrainedNetwork::standard(4));
+        trained.network.scale_head.bias[2] = 1e-20;
+        assert!(!trained.is_at_rest());
     }
 
     #[test]

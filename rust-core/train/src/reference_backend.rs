@@ -27,18 +27,18 @@ pub struct ReferenceBackend {
 }
 
 impl ReferenceBackend {
-    /// The loss of a view and its gradient by the parameters, and how many splats had any.
+    /// The loss of a view and its gradient.
     fn differentiate(
         &self,
         plan: &StepPlan,
         view: &TrainingView,
         target: &TargetImage,
-    ) -> Result<(LossValue, Splats, u32), BackendError> {
+    ) -> Result<(LossValue, ReferenceGradient), BackendError> {
         let refuse = |reason: String| BackendError::View { id: view.id, reason };
         view.camera.validate().map_err(|error| refuse(error.to_string()))?;
-        let scene = Scene::from_splats(self.state.splats.clone());
+        let scene = self.scene(plan.network.is_some());
         let settings = FrameSettings {
-            time: view.time,
+            time: plan.time_of(view),
             max_sh_degree: plan.sh_degree,
             ..FrameSettings::default()
         };
@@ -49,11 +49,39 @@ impl ReferenceBackend {
         let by_image: Vec<[f32; 4]> =
             loss.gradient.iter().map(|pixel| pixel.map(|g| g as f32)).collect();
         let gradient = ImageGradient { color: &by_image, expected_depth: None };
-        let by_splats = reference::gradients(&scene, &view.camera, &settings, &gradient).splats;
-        let visible = by_splats.iter().filter(|by| by.sh[0] != [0.0; 3]).count() as u32;
+        let by = reference::gradients(&scene, &view.camera, &settings, &gradient);
+        let by_network = reference::network_gradient(&scene, &settings, &by.outputs);
         let value = LossValue { l1: loss.l1, ssim: loss.ssim, total: loss.total };
-        Ok((value, to_single(&by_splats, &self.state.splats), visible))
+        let gradient = ReferenceGradient {
+            by_splats: to_single(&by.splats, &self.state.splats),
+            by_network: by_network.as_ref().map_or_else(Vec::new, flat_network_gradient),
+            visible: by.splats.iter().filter(|by| by.sh[0] != [0.0; 3]).count() as u32,
+        };
+        Ok((value, gradient))
     }
+
+    /// The resident splats, with the network that moves them where it is asked for.
+    fn scene(&self, with_network: bool) -> Scene {
+        let network = self.state.network.as_ref().filter(|_| with_network);
+        Scene {
+            deformation: network.map(|trained| trained.network.clone()),
+            ..Scene::from_splats(self.state.splats.clone())
+        }
+    }
+}
+
+/// Gradients of one step, rounded.
+struct ReferenceGradient {
+    by_splats: Splats,
+    /// In the order of [`network_parameters`](crate::network_parameters).
+    by_network: Vec<f32>,
+    /// Splats that had any.
+    visible: u32,
+}
+
+fn flat_network_gradient(gradient: &reference::NetworkGradient) -> Vec<f32> {
+    let layers = gradient.layers.iter();
+    layers.flat_map(|layer| layer.weight.iter().chain(&layer.bias)).map(|&g| g as f32).collect()
 }
 
 /// Gradients splat by splat as the arrays that the update takes.
@@ -98,8 +126,10 @@ impl TrainingBackend for ReferenceBackend {
         let missing = BackendError::MissingTarget { id: view.id };
         let target = self.targets.get(&view.id).ok_or(missing)?.clone();
         self.state.raise_sh_degree(plan.sh_degree);
-        let (loss, mut by_splats, visible) = self.differentiate(plan, view, &target)?;
-        let not_finite = apply_update(Level::baseline(), &mut self.state, &mut by_splats, plan);
+        let (loss, mut by) = self.differentiate(plan, view, &target)?;
+        let (level, visible) = (Level::baseline(), by.visible);
+        let not_finite =
+            apply_update(level, &mut self.state, &mut by.by_splats, &by.by_network, plan);
         self.reports.push(StepReport { step: plan.step, loss, not_finite, visible });
         Ok(())
     }
@@ -119,7 +149,96 @@ impl TrainingBackend for ReferenceBackend {
 
     fn render(&mut self, camera: &Camera, settings: &FrameSettings) -> Result<Frame, BackendError> {
         camera.validate().map_err(|error| BackendError::Render(error.to_string()))?;
-        let scene = Scene::from_splats(self.state.splats.clone());
-        Ok(reference::render(&scene, camera, settings).to_frame())
+        Ok(reference::render(&self.scene(true), camera, settings).to_frame())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+    use trapeze_scene::deformation::PositionHead;
+
+    use super::*;
+    use crate::config::{DeformationTraining, TrainingConfig};
+    use crate::loss::Channels;
+    use crate::{TrainedNetwork, network_parameters, set_network_parameters};
+
+    const SIZE: (u32, u32) = (20, 14);
+
+    /// Three splats so wide that each reaches every pixel: no pixel changes sides at a cut-off of α
+    /// while a weight moves. The photograph is far from the render, so no pixel's |error| has its
+    /// kink there either.
+    fn backend() -> (ReferenceBackend, TrainingView) {
+        let splats = Splats {
+            positions: vec![[-0.4, 0.2, 0.1], [0.5, -0.1, 0.6], [0.1, 0.4, -0.5]],
+            log_scales: vec![[0.2, 0.4, 0.3], [0.5, 0.1, 0.4], [0.3, 0.4, 0.6]],
+            rotations: vec![[1.0, 0.2, -0.1, 0.3], [0.8, -0.3, 0.4, 0.1], [0.9, 0.1, 0.5, -0.2]],
+            opacity_logits: vec![-0.4, 0.1, -0.2],
+            sh_dc: vec![[0.4, 0.1, 0.2], [0.1, 0.5, 0.3], [0.3, 0.2, 0.1]],
+            ..Splats::default()
+        };
+        let mut trained = TrainedNetwork::standard(6);
+        let drawn = TrainedNetwork::standard(7).network;
+        // Heads that move by a few hundredths.
+        let network = &mut trained.network;
+        let PositionHead::Translation(warp) = &mut network.position_head else { panic!() };
+        for (head, from) in
+            [warp, &mut network.rotation_head, &mut network.scale_head].into_iter().zip(1..)
+        {
+            let n = head.weight.len();
+            head.weight.copy_from_slice(&drawn.hidden[from].weight[..n]);
+        }
+        let state = TrainingState { network: Some(trained), ..TrainingState::new(splats) };
+        let mut backend = ReferenceBackend::default();
+        backend.load(&state, 3).unwrap();
+        let eye = DVec3::new(0.2, -0.1, -4.0);
+        let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::NEG_Y, 0.7, SIZE);
+        (backend, TrainingView { id: 0, camera, time: 0.4 })
+    }
+
+    #[test]
+    fn the_gradient_of_the_loss_by_weights_is_the_difference_quotient() {
+        let (mut backend, view) = backend();
+        let white = vec![255; (SIZE.0 * SIZE.1 * 3) as usize];
+        let target = TargetImage::new(SIZE.0, SIZE.1, Channels::Rgb, white).unwrap();
+        let config = TrainingConfig {
+            deformation: Some(DeformationTraining {
+                warm_up: 0,
+                time_noise: 0.05,
+                ..DeformationTraining::default()
+            }),
+            ..TrainingConfig::fixed(10)
+        };
+        let plan = config.step_plan(3, 1.0, 1.0);
+        assert_ne!(plan.time_of(&view), view.time);
+        let (_, gradient) = backend.differentiate(&plan, &view, &target).unwrap();
+        let analytic = gradient.by_network;
+        let weights = network_parameters(&backend.state.network.as_ref().unwrap().network);
+        let mut loss_at = |k: usize, by: f32| {
+            let mut moved = weights.clone();
+            moved[k] += by;
+            let trained = backend.state.network.as_mut().unwrap();
+            set_network_parameters(&mut trained.network, &moved);
+            let (loss, _) = backend.differentiate(&plan, &view, &target).unwrap();
+            (f64::from(moved[k]), loss.total)
+        };
+        // Of each tensor the weight with the largest gradient.
+        let network = TrainedNetwork::zeros().network;
+        let mut first = 0;
+        for (l, layer) in network.layers().enumerate() {
+            for n in [layer.weight.len(), layer.bias.len()] {
+                let of_size = |k: &usize| analytic[*k].abs();
+                let k =
+                    (first..first + n).max_by(|a, b| of_size(a).total_cmp(&of_size(b))).unwrap();
+                first += n;
+                // Weights are f32, so what was really added is measured; the third derivative's
+                // h²/6 and the image gradient's rounding to f32 are both below 10⁻⁵.
+                let (low, high) = (loss_at(k, -3e-4), loss_at(k, 3e-4));
+                let difference = (high.1 - low.1) / (high.0 - low.0);
+                let exact = f64::from(analytic[k]);
+                assert!(exact != 0.0);
+                assert!((difference - exact).abs() <= 1e-4 * exact.abs(), "layer {l}");
+            }
+        }
     }
 }

@@ -3,6 +3,7 @@
 
 use trapeze_scene::ShDegree;
 
+use crate::backend::TrainingView;
 use crate::config::{Background, Densification, TrainingConfig};
 use crate::densify::{PositionNoise, grown_count};
 use crate::optimizer::{AdamStep, Rates, Regularisers};
@@ -54,6 +55,14 @@ pub struct DensifyPlan {
     pub dead_opacity: f64,
     /// Number of splats afterwards.
     pub count: u32,
+}
+
+impl StepPlan {
+    /// The time at which the step renders a view.
+    #[must_use]
+    pub fn time_of(&self, view: &TrainingView) -> f32 {
+        view.time + self.network.map_or(0.0, |network| network.time_offset)
+    }
 }
 
 impl TrainingConfig {

@@ -3,16 +3,20 @@
 //! | bytes | content |
 //! |---|---|
 //! | 8 | `TRPZCKPT` |
-//! | 4 | version, 1 |
+//! | 4 | version, 2 |
 //! | 4 | length h of the header |
-//! | h | header, JSON: `step`, `splats`, `sh_degree`, `config`, `progress` |
+//! | h | header, JSON: `step`, `splats`, `sh_degree`, `network`, `config`, `progress` |
 //! | 4·m | parameters as f32: positions, log_scales, rotations, opacity_logits, sh_dc, sh_rest |
 //! | 4·m | first moments, likewise |
 //! | 4·m | second moments, likewise |
+//! | 4·w | where `network` is true: weights and biases of the standard network, as in `weights.bin` |
+//! | 4·w | their first moments, likewise |
+//! | 4·w | their second moments, likewise |
 //! | 4 | CRC-32 (IEEE) of everything before it |
 //!
-//! All little-endian; m = splats · (14 + 3·((sh_degree + 1)² − 1)). The length of the file follows
-//! from the header, and is compared before anything is allocated.
+//! All little-endian; m = splats · (14 + 3·((sh_degree + 1)² − 1)), w = 506 378. The length of the
+//! file follows from the header, and is compared before anything is allocated. Version 1 had no
+//! `network`, and is still read.
 
 use std::fs::File;
 use std::io::{BufReader, Read, Write};
@@ -24,12 +28,14 @@ use trapeze_formats::{ParseError, ReadError, WriteError, write_atomically};
 use trapeze_scene::{ShDegree, Splats};
 
 use super::{Checkpoint, Progress};
-use crate::TrainingState;
 use crate::config::TrainingConfig;
 use crate::parameters::{ParameterGroup, zeros_like};
+use crate::{TrainedNetwork, TrainingState, network_parameters, set_network_parameters};
 
 const MAGIC: [u8; 8] = *b"TRPZCKPT";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
+/// The first version, which had no deformation network.
+const OLDEST_VERSION: u32 = 1;
 /// Bytes before the header.
 const PREFIX: u64 = 16;
 /// A header has a few hundred bytes; far more is damage.
@@ -42,6 +48,9 @@ struct Header {
     step: u32,
     splats: u32,
     sh_degree: u32,
+    /// Whether the standard deformation network follows the splats.
+    #[serde(default)]
+    network: bool,
     config: TrainingConfig,
     progress: Progress,
 }
@@ -60,10 +69,19 @@ pub fn write_checkpoint(path: &Path, checkpoint: &Checkpoint) -> Result<(), Writ
         found: error.to_string(),
     };
     state.validate().map_err(|error| refuse(&error))?;
+    if state.network.as_ref().is_some_and(|trained| !trained.is_standard()) {
+        return Err(WriteError::Unrepresentable {
+            path: path.into(),
+            what: "deformation network".into(),
+            expected: "the standard one, as training starts it".into(),
+            found: "another".into(),
+        });
+    }
     let header = serde_json::to_vec(&Header {
         step: state.step,
         splats: state.splats.len() as u32,
         sh_degree: state.splats.sh_degree as u32,
+        network: state.network.is_some(),
         config: checkpoint.config.clone(),
         progress: checkpoint.progress.clone(),
     })
@@ -78,6 +96,11 @@ pub fn write_checkpoint(path: &Path, checkpoint: &Checkpoint) -> Result<(), Writ
             for group in ParameterGroup::ALL {
                 write_floats(&mut out, group.of(part))?;
             }
+        }
+        if let Some(trained) = &state.network {
+            write_floats(&mut out, &network_parameters(&trained.network))?;
+            write_floats(&mut out, &trained.first_moments)?;
+            write_floats(&mut out, &trained.second_moments)?;
         }
         let checksum = out.hasher.finalize();
         out.inner.write_all(&checksum.to_le_bytes())
@@ -110,8 +133,9 @@ fn parse(source: impl Read, length: u64) -> Result<Checkpoint, ParseError> {
         return Err(ParseError::value("magic", "\"TRPZCKPT\"", found));
     }
     let version = u32::from_le_bytes(input.array()?);
-    if version != VERSION {
-        return Err(ParseError::value("version", VERSION.to_string(), version));
+    if !(OLDEST_VERSION..=VERSION).contains(&version) {
+        let expected = format!("{OLDEST_VERSION} to {VERSION}");
+        return Err(ParseError::value("version", expected, version));
     }
     let header_length = u32::from_le_bytes(input.array()?);
     if header_length > LONGEST_HEADER {
@@ -130,8 +154,9 @@ fn parse(source: impl Read, length: u64) -> Result<Checkpoint, ParseError> {
         .validate()
         .map_err(|error| ParseError::value("config", "valid settings", error))?;
     let degree = ShDegree::try_from(header.sh_degree)?;
-    // At most 2³² · 59 · 12 bytes: no overflow in 64 bits.
-    let arrays = TrainingState::bytes(header.splats.into(), degree);
+    // At most 2³² · 59 · 12 bytes and those of one network: no overflow in 64 bits.
+    let network = if header.network { TrainedNetwork::bytes() } else { 0 };
+    let arrays = TrainingState::bytes(header.splats.into(), degree) + network;
     let expected = PREFIX + u64::from(header_length) + arrays + 4;
     if length < expected {
         return Err(truncated("checkpoint", expected, length));
@@ -170,7 +195,20 @@ fn read_state<R: Read>(
             read_floats(input, group.of_mut(part))?;
         }
     }
+    if header.network {
+        state.network = Some(read_network(input)?);
+    }
     Ok(state)
+}
+
+fn read_network<R: Read>(input: &mut Checksummed<R>) -> std::io::Result<TrainedNetwork> {
+    let mut trained = TrainedNetwork::zeros();
+    let mut parameters = vec![0.0; trained.first_moments.len()];
+    read_floats(input, &mut parameters)?;
+    set_network_parameters(&mut trained.network, &parameters);
+    read_floats(input, &mut trained.first_moments)?;
+    read_floats(input, &mut trained.second_moments)?;
+    Ok(trained)
 }
 
 fn truncated(field: &str, expected: u64, found: u64) -> ParseError {
@@ -232,124 +270,4 @@ fn read_floats<R: Read>(input: &mut Checksummed<R>, values: &mut [f32]) -> std::
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::parameters::tests::random_splats;
-    use crate::random::{Purpose, Stream, below};
-
-    fn checkpoint(degree: ShDegree) -> Checkpoint {
-        let mut state = TrainingState::new(random_splats(1, 21, degree));
-        state.first_moments = random_splats(2, 21, degree);
-        state.second_moments = random_splats(3, 21, degree);
-        state.step = 1234;
-        Checkpoint {
-            config: TrainingConfig { seed: u64::MAX, ..TrainingConfig::default() },
-            progress: Progress {
-                // Not a short decimal: survives only if JSON keeps every bit.
-                rate_factor: 0.1 + 0.2,
-                extent: std::f64::consts::PI / 3.0,
-                dataset: "fern, 17 views".into(),
-                ..Progress::default()
-            },
-            state,
-        }
-    }
-
-    fn bytes_of(checkpoint: &Checkpoint) -> Vec<u8> {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.checkpoint");
-        write_checkpoint(&path, checkpoint).unwrap();
-        std::fs::read(&path).unwrap()
-    }
-
-    fn parse_bytes(bytes: &[u8]) -> Result<Checkpoint, ParseError> {
-        parse(bytes, bytes.len() as u64)
-    }
-
-    #[test]
-    fn a_checkpoint_is_read_as_it_was_written_bit_for_bit() {
-        for degree in ShDegree::ALL {
-            let mut written = checkpoint(degree);
-            written.state.splats.positions[3][1] = -0.0;
-            written.state.splats.positions[3][2] = f32::from_bits(1);
-            let read = parse_bytes(&bytes_of(&written)).unwrap();
-            assert_eq!(read, written);
-            assert_eq!(read.state.splats.positions[3][1].to_bits(), (-0.0f32).to_bits());
-        }
-    }
-
-    #[test]
-    fn every_truncation_is_refused_in_one_line() {
-        let bytes = bytes_of(&checkpoint(ShDegree::Zero));
-        for length in 0..bytes.len() {
-            let error = parse_bytes(&bytes[..length]).unwrap_err().to_string();
-            assert!(error.contains("expected") && !error.contains('\n'), "{length}: {error}");
-        }
-        let mut longer = bytes.clone();
-        longer.push(0);
-        let error = parse_bytes(&longer).unwrap_err().to_string();
-        assert!(error.starts_with("length: "), "{error}");
-    }
-
-    #[test]
-    fn two_thousand_damaged_files_are_all_refused() {
-        let bytes = bytes_of(&checkpoint(ShDegree::One));
-        let stream = Stream::new(11, Purpose::Initialisation, 0);
-        for trial in 0..2500 {
-            let mut damaged = bytes.clone();
-            let [count, ..] = stream.words(trial);
-            for i in 0..=below(count, 4) {
-                let [place, bit, kind, value] = stream.more_words(trial, i + 1);
-                let place = below(place, damaged.len() as u32) as usize;
-                match kind % 4 {
-                    0 => damaged[place] ^= 1 << (bit % 8),
-                    1 => damaged[place] = value as u8,
-                    2 => drop(damaged.remove(place)),
-                    _ => damaged.insert(place, value as u8),
-                }
-            }
-            if damaged == bytes {
-                continue;
-            }
-            let error = parse_bytes(&damaged).unwrap_err().to_string();
-            assert!(!error.contains('\n') && error.len() < 400, "{error}");
-        }
-    }
-
-    #[test]
-    fn hostile_counts_are_refused_before_anything_is_allocated() {
-        for splats in [1u64 << 31, (1 << 32) - 1, 1 << 32, 1 << 63] {
-            let header = serde_json::to_string(&Header {
-                step: 0,
-                splats: 777_777,
-                sh_degree: 3,
-                config: TrainingConfig::default(),
-                progress: Progress::default(),
-            })
-            .unwrap()
-            .replace("777777", &splats.to_string());
-            let mut bytes = MAGIC.to_vec();
-            bytes.extend(VERSION.to_le_bytes());
-            bytes.extend((header.len() as u32).to_le_bytes());
-            bytes.extend(header.bytes());
-            assert!(parse_bytes(&bytes).is_err());
-            for length in [u32::MAX, LONGEST_HEADER + 1] {
-                bytes[12..16].copy_from_slice(&length.to_le_bytes());
-                let error = parse_bytes(&bytes).unwrap_err().to_string();
-                assert!(error.starts_with("header length: "), "{error}");
-            }
-        }
-    }
-
-    #[test]
-    fn other_files_and_versions_are_refused_by_field() {
-        let mut bytes = bytes_of(&checkpoint(ShDegree::Zero));
-        bytes[8] = 9;
-        let error = parse_bytes(&bytes).unwrap_err().to_string();
-        assert_eq!(error, "version: expected 1, found 9");
-        let error = parse_bytes(b"ply\nformat ascii 1.0\n").unwrap_err().to_string();
-        assert!(error.starts_with("magic: expected \"TRPZCKPT\""), "{error}");
-        let folder = tempfile::tempdir().unwrap();
-        assert!(read_checkpoint(folder.path()).is_err());
-    }
-}
+mod tests;

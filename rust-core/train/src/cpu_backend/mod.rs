@@ -9,13 +9,13 @@ use fearless_simd::Level;
 use trapeze_cpu::{DifferentiableRenderer, ImageGradient, RendererOptions};
 use trapeze_scene::{Camera, Frame, FrameSettings, Scene, Splats};
 
-use crate::TrainingState;
 use crate::backend::{BackendError, StepReport, TrainingBackend, TrainingView};
 use crate::densify::densify;
 use crate::loss::{ImageLoss, LossValue, TargetImage};
 use crate::optimizer::apply_update;
 use crate::report_queue::ReportQueue;
 use crate::schedule::{DensifyPlan, StepPlan};
+use crate::{TrainedNetwork, TrainingState};
 use targets::ResidentTargets;
 
 /// How the CPU trains; nothing but the SIMD level changes a result, and that by rounding.
@@ -36,6 +36,10 @@ impl Default for CpuBackendOptions {
     }
 }
 
+/// Bytes that the network's way back takes at most: sixteen sums in the shape of the network, and
+/// the activations of as many batches of 128 splats.
+const NETWORK_WORKING_BYTES: u64 = 64 << 20;
+
 /// Time spent in each part of the steps so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CpuStepTimes {
@@ -47,6 +51,8 @@ pub struct CpuStepTimes {
     pub rasterize_backward: Duration,
     /// From these to the stored parameters.
     pub project_backward: Duration,
+    /// Through the deformation network to its weights.
+    pub deform_backward: Duration,
     /// Regularisers, optimiser and noise.
     pub update: Duration,
 }
@@ -55,12 +61,13 @@ pub struct CpuStepTimes {
 pub struct CpuBackend {
     options: CpuBackendOptions,
     state: TrainingState,
-    /// What is rendered: a scene of nothing but the state's splats, which are lent to it.
+    /// What is rendered: the state's splats, which are lent to it, and a copy of its network.
     scene: Scene,
     renderer: DifferentiableRenderer,
     loss: ImageLoss,
     by_image: Vec<[f32; 4]>,
     by_splats: Splats,
+    by_network: Vec<f32>,
     targets: ResidentTargets,
     reports: ReportQueue,
     times: CpuStepTimes,
@@ -80,6 +87,7 @@ impl CpuBackend {
             loss: ImageLoss::with_level(level),
             by_image: Vec::new(),
             by_splats: Splats::default(),
+            by_network: Vec::new(),
             targets: ResidentTargets::new(target_budget),
             reports: ReportQueue::default(),
             times: CpuStepTimes::default(),
@@ -98,7 +106,18 @@ impl CpuBackend {
         let state_bytes = TrainingState::bytes(splats, state.splats.sh_degree);
         // Gradients are a third of a state; poses, projected splats (twice: before and after they
         // are sorted), sums and keys.
-        state_bytes + state_bytes / 3 + splats * (44 + 2 * 64 + 40 + 16)
+        let splat_bytes = state_bytes + state_bytes / 3 + splats * (44 + 2 * 64 + 40 + 16);
+        // Parameters, moments, gradient, the copy that is rendered; the way back.
+        let network = state.network.as_ref().map_or(0, |_| 2 * TrainedNetwork::bytes());
+        splat_bytes + network + state.network.as_ref().map_or(0, |_| NETWORK_WORKING_BYTES)
+    }
+
+    /// Lends the splats to the scene that is rendered, or takes them back. The network, where it is
+    /// asked for, is copied: two megabytes beside the gigaflops that it takes to use it.
+    fn lend(&mut self, with_network: bool) {
+        std::mem::swap(&mut self.scene.splats, &mut self.state.splats);
+        let network = self.state.network.as_ref().filter(|_| with_network);
+        self.scene.deformation = network.map(|trained| trained.network.clone());
     }
 
     /// Renders the resident splats and carries the loss back to `by_splats`.
@@ -108,9 +127,9 @@ impl CpuBackend {
         view: &TrainingView,
         target: &TargetImage,
     ) -> Result<LossValue, BackendError> {
-        std::mem::swap(&mut self.scene.splats, &mut self.state.splats);
+        self.lend(plan.network.is_some());
         let loss = self.differentiate_scene(plan, view, target);
-        std::mem::swap(&mut self.scene.splats, &mut self.state.splats);
+        self.lend(false);
         loss.map_err(|reason| BackendError::View { id: view.id, reason })
     }
 
@@ -121,7 +140,7 @@ impl CpuBackend {
         target: &TargetImage,
     ) -> Result<LossValue, String> {
         let settings = FrameSettings {
-            time: view.time,
+            time: plan.time_of(view),
             max_sh_degree: plan.sh_degree,
             ..FrameSettings::default()
         };
@@ -140,11 +159,17 @@ impl CpuBackend {
         self.times.loss += start.elapsed();
         let gradient = ImageGradient { color: &self.by_image, expected_depth: None };
         self.renderer
-            .backward(&self.scene, &gradient, &mut self.by_splats)
+            .backward_with_network(
+                &self.scene,
+                &gradient,
+                &mut self.by_splats,
+                &mut self.by_network,
+            )
             .map_err(|error| error.to_string())?;
         let passes = self.renderer.times();
         self.times.rasterize_backward += passes.rasterize_backward;
         self.times.project_backward += passes.project_backward;
+        self.times.deform_backward += passes.deform_backward;
         Ok(loss)
     }
 }
@@ -156,6 +181,10 @@ impl Default for CpuBackend {
 }
 
 impl TrainingBackend for CpuBackend {
+    fn network_working_bytes(&self, _splats: u32) -> u64 {
+        NETWORK_WORKING_BYTES
+    }
+
     fn target_budget(&self) -> u64 {
         self.options.target_budget as u64
     }
@@ -191,8 +220,9 @@ impl TrainingBackend for CpuBackend {
         let loss = self.differentiate(plan, view, &target)?;
         let visible = self.renderer.visible_splats() as u32;
         let start = Instant::now();
+        let (by_splats, by_network) = (&mut self.by_splats, &self.by_network);
         let not_finite =
-            apply_update(self.options.level, &mut self.state, &mut self.by_splats, plan);
+            apply_update(self.options.level, &mut self.state, by_splats, by_network, plan);
         self.times.update += start.elapsed();
         self.reports.push(StepReport { step: plan.step, loss, not_finite, visible });
         Ok(())
@@ -212,9 +242,9 @@ impl TrainingBackend for CpuBackend {
     }
 
     fn render(&mut self, camera: &Camera, settings: &FrameSettings) -> Result<Frame, BackendError> {
-        std::mem::swap(&mut self.scene.splats, &mut self.state.splats);
+        self.lend(true);
         let frame = self.renderer.forward(&self.scene, camera, settings).cloned();
-        std::mem::swap(&mut self.scene.splats, &mut self.state.splats);
+        self.lend(false);
         frame.map_err(|error| BackendError::Render(error.to_string()))
     }
 }

@@ -7,8 +7,9 @@ use serde::{Deserialize, Serialize};
 use trapeze_scene::Splats;
 
 use super::Rates;
-use crate::TrainingState;
 use crate::parameters::ParameterGroup;
+use crate::schedule::NetworkStep;
+use crate::{TrainedNetwork, TrainingState};
 
 /// Adam's constants.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -92,15 +93,57 @@ pub fn adam_step(
         let gradients = group.of(gradients);
         assert_eq!(parameters.len(), gradients.len(), "gradients of {}", group.name());
         let rate = (rates.of(group) * step.first_correction) as f32;
-        skipped += parameters
-            .par_chunks_mut(CHUNK)
-            .zip(first.par_chunks_mut(CHUNK))
-            .zip(second.par_chunks_mut(CHUNK))
-            .zip(gradients.par_chunks(CHUNK))
-            .map(|(((p, m), v), g)| dispatch!(level, simd => update(simd, p, m, v, g, rate, step)))
-            .sum::<u32>();
+        skipped += update_all(level, parameters, first, second, gradients, rate, step);
     }
     skipped
+}
+
+/// The same for the weights and biases of a deformation network; `gradients` are in the order of
+/// [`network_parameters`](crate::network_parameters).
+///
+/// # Panics
+/// When the gradients or the moments belong to another network.
+pub fn adam_step_of_network(
+    level: Level,
+    trained: &mut TrainedNetwork,
+    gradients: &[f32],
+    step: &NetworkStep,
+) -> u32 {
+    assert_eq!(gradients.len(), trained.network.parameter_count(), "gradients of the network");
+    let rate = (step.rate * step.adam.first_correction) as f32;
+    let (mut first, mut second) = (&mut trained.first_moments[..], &mut trained.second_moments[..]);
+    let mut gradients = gradients;
+    let mut skipped = 0;
+    for layer in trained.network.layers_mut() {
+        for array in [&mut layer.weight, &mut layer.bias] {
+            let n = array.len();
+            let (m, v, g);
+            (m, first) = std::mem::take(&mut first).split_at_mut(n);
+            (v, second) = std::mem::take(&mut second).split_at_mut(n);
+            (g, gradients) = gradients.split_at(n);
+            skipped += update_all(level, array, m, v, g, rate, &step.adam);
+        }
+    }
+    skipped
+}
+
+/// One step on one array and its moments.
+fn update_all(
+    level: Level,
+    parameters: &mut [f32],
+    first: &mut [f32],
+    second: &mut [f32],
+    gradients: &[f32],
+    rate: f32,
+    step: &AdamStep,
+) -> u32 {
+    parameters
+        .par_chunks_mut(CHUNK)
+        .zip(first.par_chunks_mut(CHUNK))
+        .zip(second.par_chunks_mut(CHUNK))
+        .zip(gradients.par_chunks(CHUNK))
+        .map(|(((p, m), v), g)| dispatch!(level, simd => update(simd, p, m, v, g, rate, step)))
+        .sum()
 }
 
 #[simd]
@@ -132,6 +175,7 @@ mod tests {
     use trapeze_scene::ShDegree;
 
     use super::*;
+    use crate::network_parameters;
     use crate::parameters::tests::random_splats;
 
     fn rates() -> Rates {
@@ -242,5 +286,26 @@ mod tests {
         let expected = run(1, Level::baseline());
         assert_eq!(run(3, Level::new()), expected);
         assert_eq!(run(2, Level::baseline()), expected);
+    }
+
+    #[test]
+    fn a_network_is_updated_number_by_number_in_the_order_of_its_gradient() {
+        let constants = AdamConstants::default();
+        let step = NetworkStep { time_offset: 0.0, rate: 1e-3, adam: constants.at_step(1) };
+        let mut trained = TrainedNetwork::standard(2);
+        let before = network_parameters(&trained.network);
+        let n = before.len();
+        let mut gradients: Vec<f32> = (0..n).map(|i| 1e-6 * ((i % 7) as f32 - 3.0)).collect();
+        (gradients[5], gradients[n - 1]) = (f32::NAN, f32::INFINITY);
+        assert_eq!(adam_step_of_network(Level::new(), &mut trained, &gradients, &step), 2);
+        let after = network_parameters(&trained.network);
+        for i in 0..n {
+            let (g, moment) = (gradients[i], trained.first_moments[i]);
+            // The first step of Adam is the rate, against the sign of the gradient.
+            let moved = if g.is_finite() && g != 0.0 { -1e-3 * g.signum() } else { 0.0 };
+            assert!((after[i] - before[i] - moved).abs() < 1e-7, "{i}");
+            let expected = if g.is_finite() { 0.1 * g } else { 0.0 };
+            assert!((moment - expected).abs() < 1e-12, "{i}: {moment}");
+        }
     }
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
+use glam::DVec3;
 use trapeze_formats::dataset::Dataset;
 
 use super::anchor::Anchor;
@@ -12,11 +13,12 @@ use super::search::Proposal;
 use super::trial::RunningTrial;
 use super::views::Views;
 use super::{Event, Figures, Search, TrainError, Trainer, TrainerOptions, TrainingMemory};
-use crate::TrainingState;
 use crate::backend::TrainingBackend;
 use crate::checkpoint::{Checkpoint, CheckpointFolder, Progress};
 use crate::config::TrainingConfig;
+use crate::defaults::distinct_times;
 use crate::initialise::scene_extent;
+use crate::{TrainedNetwork, TrainingState};
 
 impl<B: TrainingBackend> Trainer<B> {
     /// A new run. With a checkpoint folder its start is saved, so that it can be killed from here
@@ -32,6 +34,9 @@ impl<B: TrainingBackend> Trainer<B> {
         options: TrainerOptions,
     ) -> Result<Self, TrainError> {
         config.validate()?;
+        if config.deformation.is_some() {
+            expect_moving_scene(dataset)?;
+        }
         let views = Views::new(dataset, &config)?;
         let cameras = views.cameras();
         let extent = scene_extent(&cameras);
@@ -45,7 +50,9 @@ impl<B: TrainingBackend> Trainer<B> {
             search,
             ..Progress::default()
         };
-        let start = Checkpoint { config, progress, state: TrainingState::new(splats) };
+        let network = config.deformation.map(|_| TrainedNetwork::standard(config.seed));
+        let state = TrainingState { network, ..TrainingState::new(splats) };
+        let start = Checkpoint { config, progress, state };
         let run = Run { dataset, views, backend, options };
         run.check_memory(&start)?;
         if let Some(folder) = &run.options.checkpoints {
@@ -184,6 +191,21 @@ impl<B: TrainingBackend> Run<'_, B> {
     }
 }
 
+/// What a network can learn from: photographs of more than one time, in coordinates that it can
+/// tell apart. The files of a scene say what the network sees in world coordinates, and sines of
+/// geographic ones are noise.
+fn expect_moving_scene(dataset: &Dataset) -> Result<(), TrainError> {
+    if distinct_times(dataset).len() < 2 {
+        let expected = "more than one, for a scene that moves";
+        return Err(TrainError::dataset("times of the training views", expected, "one"));
+    }
+    if dataset.origin != DVec3::ZERO {
+        let expected = "coordinates near 0, for a scene that moves";
+        return Err(TrainError::dataset("origin", expected, dataset.origin));
+    }
+    Ok(())
+}
+
 impl Figures {
     fn new() -> Self {
         let now = Instant::now();
@@ -234,7 +256,7 @@ fn first_difference(a: &TrainingConfig, b: &TrainingConfig) -> (String, String) 
 }
 
 /// What tells one dataset, read with one set of options, from another: the number and size of the
-/// training views and a checksum of their names, cameras and lenses.
+/// training views and a checksum of their names, cameras, lenses and times.
 fn fingerprint(dataset: &Dataset) -> String {
     let mut hasher = crc32fast::Hasher::new();
     let mut views = 0;
@@ -253,6 +275,9 @@ fn fingerprint(dataset: &Dataset) -> String {
             hasher.update(&value.to_le_bytes());
         }
         hasher.update(bytemuck::cast_slice(&size));
+        if let Some(time) = view.time {
+            hasher.update(&time.to_le_bytes());
+        }
     }
     let points = dataset.points.as_ref().map_or(0, trapeze_formats::dataset::PointCloud::len);
     let [width, height] = size;

@@ -5,9 +5,9 @@ use trapeze_scene::ShDegree;
 
 use super::TrainError;
 use super::views::Views;
-use crate::TrainingState;
 use crate::backend::TrainingBackend;
 use crate::config::TrainingConfig;
+use crate::{TrainedNetwork, TrainingState};
 
 const MEGABYTE: u64 = 1 << 20;
 
@@ -36,7 +36,9 @@ impl TrainingMemory {
         let cap = config.densification.map_or(0, |densification| densification.max_splats);
         let splats = cap.max(initial);
         let degree = ShDegree::try_from(config.sh_degree).unwrap_or(ShDegree::Three);
-        let state = TrainingState::bytes(splats.into(), degree);
+        let is_moving = config.deformation.is_some();
+        let network = if is_moving { TrainedNetwork::bytes() } else { 0 };
+        let state = TrainingState::bytes(splats.into(), degree) + network;
         // Three bytes a pixel, in the backend; what is decoded ahead comes on top.
         let photographs = 3 * views.pixels();
         Self {
@@ -44,7 +46,8 @@ impl TrainingMemory {
             copies: if config.search.is_some() { 2 * state } else { state },
             photographs: photographs.min(backend.target_budget())
                 + photographs.min(photograph_budget),
-            working: backend.working_bytes(splats, views.largest()),
+            working: backend.working_bytes(splats, views.largest())
+                + if is_moving { backend.network_working_bytes(splats) } else { 0 },
         }
     }
 

@@ -44,6 +44,7 @@ use std::time::Instant;
 
 use trapeze_scene::{Camera, Frame, FrameSettings, Scene};
 
+use crate::TrainingState;
 use crate::backend::{TrainingBackend, TrainingView};
 use crate::checkpoint::{CheckpointFolder, Progress};
 use crate::config::TrainingConfig;
@@ -182,14 +183,18 @@ impl<B: TrainingBackend> Trainer<B> {
         Ok(self.backend.render(camera, &settings)?)
     }
 
-    /// The scene as it is now. SH bands that are zero are left out. Waits.
+    /// The scene as it is now. SH bands that are zero are left out, and so is a network that has not
+    /// moved anything yet. Waits.
     ///
     /// # Errors
     /// [`TrainError::Backend`] when the device fails.
     pub fn scene(&mut self) -> Result<Scene, TrainError> {
-        let splats = self.backend.state()?.splats;
+        let TrainingState { splats, network, .. } = self.backend.state()?;
         let degree = splats.used_sh_degree();
-        let scene = Scene::from_splats(splats.with_sh_degree(degree));
-        Ok(Scene { origin: self.progress.origin.into(), ..scene })
+        Ok(Scene {
+            origin: self.progress.origin.into(),
+            deformation: network.filter(|trained| !trained.is_at_rest()).map(|t| t.network),
+            ..Scene::from_splats(splats.with_sh_degree(degree))
+        })
     }
 }

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Search, Trainer, TrainingMemory};
+use crate::MotionSummary;
 use crate::backend::TrainingBackend;
 use crate::config::TrainingConfig;
 use crate::evaluation::Evaluation;
@@ -32,12 +33,15 @@ pub struct TrainingSummary {
     pub config: TrainingConfig,
     /// The choice of the budget, and its evidence.
     pub search: Option<Search>,
+    /// What of a scene that moves may rest; `None` in a static one.
+    #[serde(default)]
+    pub motion: Option<MotionSummary>,
     /// Figures of the held-out views, if there are any.
     pub test: Option<Evaluation>,
 }
 
 impl<B: TrainingBackend> Trainer<B> {
-    /// The run so far in figures, without those of held-out views.
+    /// The run so far in figures, without those of the scene that came out.
     #[must_use]
     pub fn summary(&self) -> TrainingSummary {
         let seconds = self.progress.seconds;
@@ -53,6 +57,7 @@ impl<B: TrainingBackend> Trainer<B> {
             memory: self.memory,
             config: self.config.clone(),
             search: self.progress.search.clone(),
+            motion: None,
             test: None,
         }
     }

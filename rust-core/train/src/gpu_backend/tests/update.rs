@@ -51,7 +51,7 @@ fn updated_on_cpu(
 ) -> (TrainingState, Vec<u32>) {
     let mut state = state.clone();
     let update = |(plan, gradients): &(StepPlan, Splats)| {
-        apply_update(Level::new(), &mut state, &mut gradients.clone(), plan)
+        apply_update(Level::new(), &mut state, &mut gradients.clone(), &[], plan)
     };
     let skipped = steps.iter().map(update).collect();
     (state, skipped)

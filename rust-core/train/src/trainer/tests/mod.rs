@@ -3,6 +3,7 @@
 mod captures;
 mod faults;
 mod mosaic;
+mod moving;
 mod resume;
 mod searches;
 

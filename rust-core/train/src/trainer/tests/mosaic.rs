@@ -129,7 +129,7 @@ impl TrainingBackend for Mosaic {
                 gradients.sh_dc[p % n][c] += SH_C0 as f32 * pixel[c];
             }
         }
-        let mut not_finite = apply_update(Level::new(), &mut self.state, &mut gradients, plan);
+        let mut not_finite = apply_update(Level::new(), &mut self.state, &mut gradients, &[], plan);
         match failure {
             Some(Failure::LossAbove(rate)) if plan.rates.sh_dc > rate => loss.total = f64::NAN,
             Some(Failure::SkippedOnce) => not_finite += 5,
