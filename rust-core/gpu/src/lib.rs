@@ -35,7 +35,7 @@ pub use device_report::DeviceReport;
 pub use differentiable::{
     DifferentiableRenderer, ForwardSettings, FrameStatus, ImageGradientBuffers, PassTimes,
 };
-pub use differentiable_deformation::DifferentiableDeformation;
+pub use differentiable_deformation::{DeformationTimes, DifferentiableDeformation};
 pub use error::GpuError;
 pub use harmonics::HarmonicsStorage;
 pub use memory::{MemoryPlan, MemoryRequest, PlannedBuffer, SceneSize};

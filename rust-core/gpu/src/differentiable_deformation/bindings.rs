@@ -1,6 +1,6 @@
 //! Bind groups: those of a layer, and those of the splats that are deformed.
 
-use super::kernels::DeformationKernels;
+use super::kernels::{DeformationKernels, Stage};
 use super::{BLOCK_STRIDE, NetworkBuffers};
 use crate::kernel::{part, whole};
 use crate::layout::{NetworkChunk, NetworkLayer};
@@ -42,14 +42,16 @@ impl LayerBindings {
         let (parameters, activations) = (&buffers.parameters, &buffers.activations);
         let rows = || [buffers.layer(index), whole(parameters), whole(activations)];
         Self {
-            forward: kernels.layer.interface.bind(gpu, &rows()),
-            backward: kernels.layer_backward.interface.bind(gpu, &rows()),
-            weights_backward: kernels.weights_backward.interface.bind(
+            forward: kernels.bind(gpu, Stage::Layer, &rows()),
+            backward: kernels.bind(gpu, Stage::LayerBackward, &rows()),
+            weights_backward: kernels.bind(
                 gpu,
+                Stage::WeightsBackward,
                 &[buffers.chunk(), buffers.layer(index), whole(activations), whole(&buffers.parts)],
             ),
-            weights_sum: kernels.weights_sum.interface.bind(
+            weights_sum: kernels.bind(
                 gpu,
+                Stage::WeightsSum,
                 &[
                     buffers.chunk(),
                     buffers.layer(index),
@@ -89,12 +91,14 @@ impl ForwardBindings {
     ) -> Self {
         Self {
             canonical: Geometry::of(canonical),
-            encode: kernels.encode.interface.bind(
+            encode: kernels.bind(
                 gpu,
+                Stage::Encode,
                 &[buffers.chunk(), whole(&canonical.positions), whole(&buffers.activations)],
             ),
-            apply: kernels.apply.interface.bind(
+            apply: kernels.bind(
                 gpu,
+                Stage::Apply,
                 &[
                     buffers.chunk(),
                     buffers.layer(buffers.heads()),
@@ -136,8 +140,9 @@ impl BackwardBindings {
         Self {
             canonical: Geometry::of(canonical),
             gradients: Geometry::of(gradients),
-            apply: kernels.apply_backward.interface.bind(
+            apply: kernels.bind(
                 gpu,
+                Stage::ApplyBackward,
                 &[
                     buffers.chunk(),
                     buffers.layer(buffers.heads()),

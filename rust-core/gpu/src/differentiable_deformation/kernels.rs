@@ -3,24 +3,31 @@
 use crate::kernel::{Binding, Interface};
 use crate::{Gpu, shaders};
 
+/// The kernels, in the order of both passes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Stage {
+    Encode,
+    Layer,
+    Apply,
+    ApplyBackward,
+    WeightsBackward,
+    WeightsSum,
+    LayerBackward,
+}
+
+/// Number of stages.
+pub(super) const STAGES: usize = 7;
+
 /// A kernel with one entry point.
 #[derive(Debug)]
-pub(crate) struct Kernel {
-    pub interface: Interface,
-    pub pipeline: wgpu::ComputePipeline,
+pub(super) struct Kernel {
+    pub(super) interface: Interface,
+    pub(super) pipeline: wgpu::ComputePipeline,
 }
 
 /// One kernel per stage.
 #[derive(Debug)]
-pub(crate) struct DeformationKernels {
-    pub encode: Kernel,
-    pub layer: Kernel,
-    pub apply: Kernel,
-    pub apply_backward: Kernel,
-    pub layer_backward: Kernel,
-    pub weights_backward: Kernel,
-    pub weights_sum: Kernel,
-}
+pub(crate) struct DeformationKernels([Kernel; STAGES]);
 
 impl DeformationKernels {
     pub(crate) fn new(gpu: &Gpu) -> Self {
@@ -29,23 +36,34 @@ impl DeformationKernels {
             let interface = Interface::new(gpu, shader.name, &shader.source(), bindings);
             Kernel { pipeline: interface.pipeline(gpu, shader.name, &[]), interface }
         };
-        Self {
-            encode: kernel(shaders::network::ENCODE, &[UniformAt, Read, Write]),
-            layer: kernel(shaders::network::LAYER, &[Uniform, Read, Write]),
-            apply: kernel(
+        Self([
+            kernel(shaders::network::ENCODE, &[UniformAt, Read, Write]),
+            kernel(shaders::network::LAYER, &[Uniform, Read, Write]),
+            kernel(
                 shaders::network::APPLY,
                 &[UniformAt, Uniform, Read, Read, Read, Read, Read, Write, Write, Write],
             ),
-            apply_backward: kernel(
+            kernel(
                 shaders::network::APPLY_BACKWARD,
                 &[UniformAt, Uniform, Read, Read, Read, Read, Write, Write, Write],
             ),
-            layer_backward: kernel(shaders::network::LAYER_BACKWARD, &[Uniform, Read, Write]),
-            weights_backward: kernel(
-                shaders::network::WEIGHTS_BACKWARD,
-                &[UniformAt, Uniform, Read, Write],
-            ),
-            weights_sum: kernel(shaders::network::WEIGHTS_SUM, &[UniformAt, Uniform, Read, Write]),
-        }
+            kernel(shaders::network::WEIGHTS_BACKWARD, &[UniformAt, Uniform, Read, Write]),
+            kernel(shaders::network::WEIGHTS_SUM, &[UniformAt, Uniform, Read, Write]),
+            kernel(shaders::network::LAYER_BACKWARD, &[Uniform, Read, Write]),
+        ])
+    }
+
+    pub(super) fn of(&self, stage: Stage) -> &Kernel {
+        &self.0[stage as usize]
+    }
+
+    /// Binds buffers to a stage.
+    pub(super) fn bind(
+        &self,
+        gpu: &Gpu,
+        stage: Stage,
+        buffers: &[wgpu::BufferBinding<'_>],
+    ) -> wgpu::BindGroup {
+        self.of(stage).interface.bind(gpu, buffers)
     }
 }

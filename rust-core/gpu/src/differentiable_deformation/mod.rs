@@ -26,20 +26,27 @@
 //! dispatches behind each other cost about 0.1 ms. Prediction: 4 to 5 ms.
 
 mod bindings;
+mod dispatches;
 mod kernels;
 mod network_layout;
 #[cfg(test)]
 mod tests;
+mod times;
 
 pub(crate) use kernels::DeformationKernels;
+pub use times::DeformationTimes;
+
+use std::time::Duration;
 
 use trapeze_scene::{DeformationNetwork, SceneError};
 
 use crate::layout::{NetworkChunk, NetworkLayer};
-use crate::stage_pass::{Groups, dispatch};
+use crate::stage_pass::begin_pass;
+use crate::timing::Timer;
 use crate::{Gpu, GpuError, ParameterBuffers, readback};
 use bindings::{BackwardBindings, ForwardBindings, LayerBindings};
-use kernels::Kernel;
+use dispatches::{Dispatch, Layers};
+use kernels::STAGES;
 use network_layout::{NetworkLayout, STEP, TILE};
 
 /// Bytes between two uniform blocks: the largest alignment that a device may ask for.
@@ -242,23 +249,10 @@ impl DifferentiableDeformation {
         canonical: &ParameterBuffers,
         time: f32,
     ) -> Result<(), GpuError> {
-        self.evaluated = None;
-        if canonical.capacity > self.capacity {
-            let bytes = |splats| u64::from(splats) * DEFORMED_BYTES;
-            let (need, have) = (bytes(canonical.capacity), bytes(self.capacity));
-            return Err(GpuError::OutOfMemory { what: "deformed splats", need, have });
-        }
-        self.write_chunks(canonical.count, time);
-        let bound = self.forward.take().filter(|bound| bound.are_of(canonical));
-        let kernels = self.gpu.kernels().deformation(&self.gpu);
-        let make = || ForwardBindings::new(&self.gpu, kernels, &self.buffers, canonical);
-        let bound = self.forward.insert(bound.unwrap_or_else(make));
-        for chunk in chunks(canonical.count, self.columns) {
-            record_hidden(kernels, &self.layers, &self.layout, bound, chunk, pass);
-            set(pass, &kernels.apply, &bound.apply, &[chunk.offset()]);
-            dispatch(pass, Groups::Direct(chunk.splats.div_ceil(64)));
-        }
-        self.evaluated = Some(canonical.count);
+        let gpu = self.gpu.clone();
+        let kernels = gpu.kernels().deformation(&gpu);
+        let list = self.forward_dispatches(canonical, time)?;
+        list.iter().for_each(|dispatch| dispatch.record(kernels, pass));
         Ok(())
     }
 
@@ -274,6 +268,69 @@ impl DifferentiableDeformation {
         canonical: &ParameterBuffers,
         gradients: &ParameterBuffers,
     ) -> Result<(), GpuError> {
+        let gpu = self.gpu.clone();
+        let kernels = gpu.kernels().deformation(&gpu);
+        let list = self.backward_dispatches(canonical, gradients)?;
+        list.iter().for_each(|dispatch| dispatch.record(kernels, pass));
+        Ok(())
+    }
+
+    /// Runs [`forward`](Self::forward), waits, and returns what each kernel took; `None` where the
+    /// device cannot tell.
+    ///
+    /// # Errors
+    /// Those of [`forward`](Self::forward), and [`GpuError::Device`] when the device is lost.
+    pub fn timed_forward(
+        &mut self,
+        canonical: &ParameterBuffers,
+        time: f32,
+    ) -> Result<Option<DeformationTimes>, GpuError> {
+        let gpu = self.gpu.clone();
+        timed(&gpu, &self.forward_dispatches(canonical, time)?)
+    }
+
+    /// Runs [`backward`](Self::backward), waits, and returns what each kernel took; `None` where the
+    /// device cannot tell.
+    ///
+    /// # Errors
+    /// Those of [`backward`](Self::backward), and [`GpuError::Device`] when the device is lost.
+    pub fn timed_backward(
+        &mut self,
+        canonical: &ParameterBuffers,
+        gradients: &ParameterBuffers,
+    ) -> Result<Option<DeformationTimes>, GpuError> {
+        let gpu = self.gpu.clone();
+        timed(&gpu, &self.backward_dispatches(canonical, gradients)?)
+    }
+
+    /// Makes bindings fit, and writes the uniform blocks.
+    fn forward_dispatches(
+        &mut self,
+        canonical: &ParameterBuffers,
+        time: f32,
+    ) -> Result<Vec<Dispatch<'_>>, GpuError> {
+        self.evaluated = None;
+        if canonical.capacity > self.capacity {
+            let bytes = |splats| u64::from(splats) * DEFORMED_BYTES;
+            let (need, have) = (bytes(canonical.capacity), bytes(self.capacity));
+            return Err(GpuError::OutOfMemory { what: "deformed splats", need, have });
+        }
+        let chunks = chunks(canonical.count, self.columns);
+        self.write_chunks(&chunks, time);
+        self.evaluated = Some(canonical.count);
+        let bound = self.forward.take().filter(|bound| bound.are_of(canonical));
+        let kernels = self.gpu.kernels().deformation(&self.gpu);
+        let make = || ForwardBindings::new(&self.gpu, kernels, &self.buffers, canonical);
+        let bound = self.forward.insert(bound.unwrap_or_else(make));
+        let layers = Layers { layers: &self.layout.layers, bindings: &self.layers };
+        Ok(dispatches::forward(layers, bound, &chunks))
+    }
+
+    fn backward_dispatches(
+        &mut self,
+        canonical: &ParameterBuffers,
+        gradients: &ParameterBuffers,
+    ) -> Result<Vec<Dispatch<'_>>, GpuError> {
         let evaluated = self.evaluated.take();
         let forward = self.forward.as_ref().filter(|bound| bound.are_of(canonical));
         let (Some(forward), true) = (forward, evaluated == Some(canonical.count)) else {
@@ -288,34 +345,23 @@ impl DifferentiableDeformation {
         let make =
             || BackwardBindings::new(&self.gpu, kernels, &self.buffers, canonical, gradients);
         let bound = self.backward.insert(bound.unwrap_or_else(make));
-        let chunks: Vec<Chunk> = chunks(canonical.count, self.columns).collect();
-        // The activations at hand are those of the last chunk.
-        for &chunk in chunks.iter().rev() {
-            if chunk.index + 1 < chunks.len() as u32 {
-                record_hidden(kernels, &self.layers, &self.layout, forward, chunk, pass);
-            }
-            set(pass, &kernels.apply_backward, &bound.apply, &[chunk.offset()]);
-            dispatch(pass, Groups::Direct(chunk.columns.div_ceil(64)));
-            for (layer, bindings) in self.layout.layers.iter().zip(&self.layers).rev() {
-                record_backward(kernels, layer, bindings, chunk, pass);
-            }
-        }
-        Ok(())
+        let layers = Layers { layers: &self.layout.layers, bindings: &self.layers };
+        let chunks = chunks(canonical.count, self.columns);
+        Ok(dispatches::backward(layers, forward, bound, &chunks))
     }
 
     /// Writes the uniform blocks of an evaluation.
-    fn write_chunks(&self, splats: u32, time: f32) {
+    fn write_chunks(&self, chunks: &[Chunk], time: f32) {
         let base = self.layout.chunk_at(time);
-        let count = splats.div_ceil(self.columns).max(1);
-        let mut blocks = vec![0; (count * BLOCK_STRIDE) as usize];
+        let mut blocks = vec![0; chunks.len() * BLOCK_STRIDE as usize];
         let slots = blocks.chunks_exact_mut(BLOCK_STRIDE as usize);
-        for (slot, chunk) in slots.zip(chunks(splats, self.columns)) {
+        for (slot, chunk) in slots.zip(chunks) {
             let block = NetworkChunk {
                 first: chunk.first,
                 splats: chunk.splats,
                 steps: chunk.steps(),
                 // The last chunk is the first on the way back.
-                starts_sum: u32::from(chunk.index + 1 == count),
+                starts_sum: u32::from(chunk.index as usize + 1 == chunks.len()),
                 row_vectors: self.columns / 4,
                 ..base
             };
@@ -376,61 +422,34 @@ fn columns_within(layout: &NetworkLayout, capacity: u32, bytes: u64) -> u32 {
 }
 
 /// The splats in runs of at most `columns`; an empty run when there are none.
-fn chunks(splats: u32, columns: u32) -> impl Iterator<Item = Chunk> {
-    (0..splats.div_ceil(columns).max(1)).map(move |index| {
+fn chunks(splats: u32, columns: u32) -> Vec<Chunk> {
+    let chunk = |index: u32| {
         let first = index * columns;
         let splats = (splats - first).min(columns);
         Chunk { index, first, splats, columns: splats.max(1).next_multiple_of(TILE) }
-    })
+    };
+    (0..splats.div_ceil(columns).max(1)).map(chunk).collect()
 }
 
-fn set(
-    pass: &mut wgpu::ComputePass<'_>,
-    kernel: &Kernel,
-    bind_group: &wgpu::BindGroup,
-    offsets: &[u32],
-) {
-    pass.set_pipeline(&kernel.pipeline);
-    pass.set_bind_group(0, bind_group, offsets);
-}
-
-/// Records γ and the hidden layers of a chunk.
-fn record_hidden(
-    kernels: &DeformationKernels,
-    bindings: &[LayerBindings],
-    layout: &NetworkLayout,
-    splats: &ForwardBindings,
-    chunk: Chunk,
-    pass: &mut wgpu::ComputePass<'_>,
-) {
-    set(pass, &kernels.encode, &splats.encode, &[chunk.offset()]);
-    dispatch(pass, Groups::Direct(chunk.columns.div_ceil(64)));
-    let depth = layout.layers.len() - 1;
-    for (layer, bound) in layout.layers.iter().zip(bindings).take(depth) {
-        set(pass, &kernels.layer, &bound.forward, &[]);
-        pass.dispatch_workgroups(layer.outputs.div_ceil(TILE), chunk.columns / TILE, 1);
+/// Runs dispatches, each in a pass of its own, waits for them, and adds up the times of each stage.
+fn timed(gpu: &Gpu, list: &[Dispatch<'_>]) -> Result<Option<DeformationTimes>, GpuError> {
+    if 2 * list.len() > wgpu::QUERY_SET_MAX_QUERIES as usize {
+        return Ok(None);
     }
-}
-
-/// Records the way back through one layer, whose outputs have their gradients.
-fn record_backward(
-    kernels: &DeformationKernels,
-    layer: &NetworkLayer,
-    bound: &LayerBindings,
-    chunk: Chunk,
-    pass: &mut wgpu::ComputePass<'_>,
-) {
-    let tiles = layer.outputs.div_ceil(TILE) * layer.inputs.div_ceil(TILE);
-    // The twin of `sum_parts` in common/network.wgsl.
-    let parts = (chunk.steps() / 4).clamp(1, layer.most_parts);
-    set(pass, &kernels.weights_backward, &bound.weights_backward, &[chunk.offset()]);
-    pass.dispatch_workgroups(tiles, parts, 1);
-    set(pass, &kernels.weights_sum, &bound.weights_sum, &[chunk.offset()]);
-    let vectors = NetworkLayout::layer_floats(layer) as u32 / 4;
-    dispatch(pass, Groups::Direct(vectors.div_ceil(64)));
-    let hidden_inputs = layer.inputs - layer.encoded_inputs;
-    if hidden_inputs > 0 {
-        set(pass, &kernels.layer_backward, &bound.backward, &[]);
-        pass.dispatch_workgroups(hidden_inputs.div_ceil(TILE), chunk.columns / TILE, 1);
+    let Some(timer) = Timer::of_stages(gpu, list.len() as u32)? else { return Ok(None) };
+    let kernels = gpu.kernels().deformation(gpu);
+    let mut encoder = gpu.device().create_command_encoder(&Default::default());
+    for (i, dispatch) in (0..).zip(list) {
+        let mut pass = begin_pass(&mut encoder, "deform", i, Some(timer.queries()));
+        dispatch.record(kernels, &mut pass);
     }
+    timer.resolve(&mut encoder);
+    gpu.queue().submit([encoder.finish()]);
+    gpu.wait()?;
+    let Some(times) = timer.read_stages(gpu)? else { return Ok(None) };
+    let mut sums = [Duration::ZERO; STAGES];
+    for (dispatch, time) in list.iter().zip(times) {
+        sums[dispatch.stage as usize] += time;
+    }
+    Ok(Some(DeformationTimes::of_stages(sums)))
 }

@@ -1,7 +1,7 @@
 //! What lives on the device: what every run shares, and what belongs to the splats of one.
 
 use trapeze_gpu::compute::whole;
-use trapeze_gpu::{DifferentiableRenderer, Gpu, GpuError};
+use trapeze_gpu::{DifferentiableRenderer, Gpu, GpuError, ParameterBuffers};
 use trapeze_scene::ShDegree;
 
 use super::densify_stage::DensifyStage;
@@ -9,10 +9,12 @@ use super::kernels::TrainingKernels;
 use super::layout::TrainingStep;
 use super::loss_stage::LossBuffers;
 use super::memory::initial_entries;
+use super::network_stage::{NetworkStage, Place};
 use super::reports::ReportRing;
 use super::splats::ResidentSplats;
 use super::targets::GpuTarget;
 use super::update_stage::UpdateStage;
+use super::{GpuBackendOptions, timing};
 use crate::TrainingState;
 use crate::schedule::StepPlan;
 
@@ -42,12 +44,6 @@ impl DeviceSide {
         self.loss.bind(&self.gpu, &self.kernels, &self.uniform, image, target)
     }
 
-    /// Writes the uniform block of a step, before the next submission.
-    pub(super) fn write_step(&self, plan: &StepPlan, splats: u32, target: &GpuTarget, slot: u32) {
-        let numbers = TrainingStep::new(plan, splats, target.size, target.is_weighted, slot);
-        self.gpu.queue().write_buffer(&self.uniform, 0, bytemuck::bytes_of(&numbers));
-    }
-
     pub(super) fn submit(&mut self, encoder: wgpu::CommandEncoder) {
         let index = self.gpu.queue().submit([encoder.finish()]);
         self.reports.submitted(index);
@@ -57,6 +53,8 @@ impl DeviceSide {
 /// Splats under training, and what is bound to their buffers.
 pub(super) struct Run {
     pub(super) splats: ResidentSplats,
+    /// What moves the splats in time.
+    pub(super) network: Option<NetworkStage>,
     pub(super) renderer: DifferentiableRenderer,
     update: UpdateStage,
     /// Made for the first change of the set.
@@ -71,7 +69,7 @@ pub(super) fn load(
     last: Option<Run>,
     state: &TrainingState,
     capacity: u32,
-    entries: Option<u32>,
+    options: &GpuBackendOptions,
 ) -> Result<Run, GpuError> {
     let gpu = &device.gpu;
     let mut reused = last.filter(|run| run.splats.parameters.capacity >= capacity);
@@ -80,10 +78,11 @@ pub(super) fn load(
     {
         reused = None;
     }
-    let run = match reused {
+    let mut run = match reused {
         Some(run) => run,
-        None => Run::new(device, state, capacity, entries)?,
+        None => Run::new(device, state, capacity, options.initial_entries)?,
     };
+    run.load_network(device, state, options.activation_budget)?;
     let mut encoder = device.gpu.device().create_command_encoder(&Default::default());
     run.renderer.record_resume(&mut encoder);
     device.gpu.queue().submit([encoder.finish()]);
@@ -103,7 +102,42 @@ impl Run {
         let renderer = DifferentiableRenderer::new(gpu, capacity, entries)?;
         let counts = renderer.counts();
         let update = UpdateStage::new(gpu, kernels, &splats, uniform, counts, &reports.buffer);
-        Ok(Self { splats, renderer, update, densify: None, image: None })
+        Ok(Self { splats, network: None, renderer, update, densify: None, image: None })
+    }
+
+    /// Brings the state's network to the device, into the buffers of the last one where it fits.
+    fn load_network(
+        &mut self,
+        device: &DeviceSide,
+        state: &TrainingState,
+        activation_budget: u64,
+    ) -> Result<(), GpuError> {
+        let last = self.network.take();
+        let Some(trained) = &state.network else { return Ok(()) };
+        let DeviceSide { gpu, kernels, reports, .. } = device;
+        let capacity = self.splats.parameters.capacity;
+        if let Some(mut stage) = last
+            && stage.write(gpu, trained, capacity)?
+        {
+            self.network = Some(stage);
+            return Ok(());
+        }
+        let (counts, reports) = (self.renderer.counts(), &reports.buffer);
+        let place = Place { capacity, activation_budget, counts, reports };
+        self.network = Some(NetworkStage::upload(gpu, kernels, trained, place)?);
+        Ok(())
+    }
+
+    /// Records posing the splats at a time, and returns what to draw: the splats themselves in a static
+    /// scene.
+    pub(super) fn record_pose(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        time: f32,
+    ) -> Result<ParameterBuffers, GpuError> {
+        let canonical = &self.splats.parameters;
+        let Some(network) = &mut self.network else { return Ok(canonical.clone()) };
+        network.record_forward(&mut timing::begin(encoder, "deform", None), canonical, time)
     }
 
     /// Records more SH bands, where `degree` has them.
@@ -156,6 +190,22 @@ impl Run {
         true
     }
 
+    /// Writes the uniform blocks of a step, before the next submission; its report goes to `slot`.
+    pub(super) fn write_step(
+        &self,
+        device: &DeviceSide,
+        plan: &StepPlan,
+        target: &GpuTarget,
+        slot: u32,
+    ) {
+        let splats = self.splats.count();
+        let numbers = TrainingStep::new(plan, splats, target.size, target.is_weighted, slot);
+        device.gpu.queue().write_buffer(&device.uniform, 0, bytemuck::bytes_of(&numbers));
+        if let (Some(step), Some(network)) = (&plan.network, &self.network) {
+            network.write_step(&device.gpu, step, slot);
+        }
+    }
+
     pub(super) fn record_report(
         &self,
         kernels: &TrainingKernels,
@@ -175,6 +225,9 @@ impl Run {
         plan: &StepPlan,
     ) {
         self.update.record(kernels, pass, self.splats.count(), plan.noise.is_some());
+        if let (Some(_), Some(network)) = (&plan.network, &self.network) {
+            network.record_update(kernels, pass);
+        }
     }
 
     /// Makes room for a view that needed `entries`, and ends the halt.

@@ -6,6 +6,7 @@ use trapeze_gpu::Gpu;
 use trapeze_gpu::compute::{Binding, Interface};
 use trapeze_gpu::shaders::training as shaders;
 
+use super::layout::NETWORK_GROUP;
 use crate::parameters::ParameterGroup;
 
 /// Interfaces and pipelines; those that depend on the number of SH bands are made when they are
@@ -18,6 +19,7 @@ pub(super) struct TrainingKernels {
     pub(super) report: wgpu::ComputePipeline,
     pub(super) adam_interface: Interface,
     adam: HashMap<(usize, u32), wgpu::ComputePipeline>,
+    pub(super) network_adam: wgpu::ComputePipeline,
     pub(super) noise_interface: Interface,
     pub(super) noise: wgpu::ComputePipeline,
     pub(super) weigh_interface: Interface,
@@ -40,6 +42,7 @@ impl TrainingKernels {
         };
         let loss = interface(shaders::LOSS, &[Uniform, Read, Read, Read, Write, Write, Write]);
         let report = interface(shaders::REPORT, &[Uniform, Read, Read, Write]);
+        let adam = interface(shaders::ADAM, &[Uniform, Write, Read, Write, Write, Write, Read]);
         let noise = interface(shaders::NOISE, &[Uniform, Write, Read, Read, Read, Read]);
         let relocate =
             interface(shaders::RELOCATE, &[Uniform, Read, Write, Write, Write, Write, Write, Read]);
@@ -50,10 +53,8 @@ impl TrainingKernels {
             loss_interface: loss,
             report: report.pipeline(gpu, "report", &[]),
             report_interface: report,
-            adam_interface: interface(
-                shaders::ADAM,
-                &[Uniform, Write, Read, Write, Write, Write, Read],
-            ),
+            network_adam: adam.pipeline(gpu, "adam", &[("GROUP", NETWORK_GROUP as f64)]),
+            adam_interface: adam,
             adam: HashMap::new(),
             noise: noise.pipeline(gpu, "noise", &[]),
             noise_interface: noise,

@@ -7,7 +7,7 @@ use trapeze_scene::ShDegree;
 use crate::densify::{dead_logit, lowest_logit, weight_bits, weight_shift};
 use crate::parameters::ParameterGroup;
 use crate::random::{Purpose, Stream};
-use crate::schedule::{DensifyPlan, StepPlan};
+use crate::schedule::{DensifyPlan, NetworkStep, StepPlan};
 
 /// Width and height of a tile of the loss, pixels.
 pub(super) const LOSS_TILE: u32 = 16;
@@ -84,6 +84,31 @@ impl TrainingStep {
             gate_steepness: noise.map_or(0.0, |n| n.gate_steepness as f32),
             gate_opacity: noise.map_or(0.0, |n| n.gate_opacity as f32),
             zero: 0,
+        }
+    }
+}
+
+/// The place of the network's rate among those of the groups: behind them.
+pub(super) const NETWORK_GROUP: usize = ParameterGroup::ALL.len();
+
+impl TrainingStep {
+    /// What the update of a network needs, whose `parameters` are one number per splat to it; what it
+    /// cannot use is counted in the report of `slot`.
+    pub(super) fn of_network(step: &NetworkStep, parameters: u32, slot: u32) -> Self {
+        let mut rates = [[0.0; 4]; 2];
+        rates[NETWORK_GROUP / 4][NETWORK_GROUP % 4] =
+            (step.rate * step.adam.first_correction) as f32;
+        Self {
+            splats: parameters,
+            slot,
+            rates,
+            beta1: step.adam.beta1,
+            one_minus_beta1: step.adam.one_minus_beta1,
+            beta2: step.adam.beta2,
+            one_minus_beta2: step.adam.one_minus_beta2,
+            second_correction: step.adam.second_correction,
+            epsilon: step.adam.epsilon,
+            ..Self::default()
         }
     }
 }

@@ -1,9 +1,11 @@
 //! What a run takes on the device, before it starts.
 
-use trapeze_scene::ShDegree;
+use trapeze_gpu::GpuError;
+use trapeze_scene::{DeformationNetwork, ShDegree};
 
 use super::densify_stage::DensifyStage;
 use super::loss_stage::LossBuffers;
+use super::network_stage::NetworkStage;
 use super::splats::ResidentSplats;
 use crate::backend::BackendError;
 
@@ -18,6 +20,8 @@ pub struct GpuMemoryPlan {
     pub entries: u64,
     /// Photographs, at most.
     pub targets: u64,
+    /// The deformation network: parameters, moments, gradients, activations, deformed splats.
+    pub network: u64,
 }
 
 /// Bytes of working memory that the renderer has for each splat: ellipse, extent and colour 48, sums
@@ -53,13 +57,28 @@ impl GpuMemoryPlan {
             working: per_splat_bytes(capacity),
             entries: u64::from(initial_entries(capacity)) * ENTRY_BYTES,
             targets,
+            network: 0,
         }
+    }
+
+    /// The same with a network, whose activations take at most `activation_budget` bytes.
+    ///
+    /// # Errors
+    /// [`GpuError::Untrainable`] names what the kernels do not train.
+    pub fn with_network(
+        self,
+        network: &DeformationNetwork,
+        capacity: u32,
+        activation_budget: u64,
+    ) -> Result<Self, GpuError> {
+        let network = NetworkStage::bytes(network, capacity, activation_budget)?;
+        Ok(Self { network, ..self })
     }
 
     /// The sum.
     #[must_use]
     pub fn total(&self) -> u64 {
-        self.splats + self.working + self.entries + self.targets
+        self.splats + self.working + self.entries + self.targets + self.network
     }
 
     /// Refuses what is more than `available` bytes.
@@ -70,11 +89,12 @@ impl GpuMemoryPlan {
         let megabytes = |bytes: u64| bytes.div_ceil(1 << 20);
         let what = format!(
             "{capacity} splats on the GPU (parameters {} MB, working memory {}, tile entries {}, \
-             photographs {})",
+             photographs {}, network {})",
             megabytes(self.splats),
             megabytes(self.working),
             megabytes(self.entries),
             megabytes(self.targets),
+            megabytes(self.network),
         );
         Err(BackendError::OutOfMemory { what, needed: self.total(), available })
     }

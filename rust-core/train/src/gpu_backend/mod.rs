@@ -11,6 +11,10 @@
 //! which hears of it a few steps later, has made room and given the orders since then again. Orders
 //! are pure functions of the state, so the result is that of a run with enough room.
 //!
+//! A scene that moves has two passes more: the network deforms the splats before they are drawn, and
+//! takes the gradients back to the canonical splats and to its weights
+//! ([`trapeze_gpu::DifferentiableDeformation`]); Adam updates both.
+//!
 //! The twins of the kernels are the CPU's: tests compare each of them.
 
 mod densify_stage;
@@ -19,6 +23,7 @@ mod kernels;
 mod layout;
 mod loss_stage;
 mod memory;
+mod network_stage;
 mod orders;
 mod reports;
 mod splats;
@@ -33,7 +38,7 @@ use std::sync::Arc;
 use trapeze_gpu::{
     Created, ForwardSettings, Gpu, GpuError, ImageGradientBuffers, ParameterBuffers,
 };
-use trapeze_scene::{Camera, Frame, FrameSettings};
+use trapeze_scene::{Camera, DeformationNetwork, Frame, FrameSettings, ShDegree};
 
 use crate::TrainingState;
 use crate::backend::{BackendError, StepReport, TrainingBackend, TrainingView};
@@ -43,6 +48,7 @@ use crate::schedule::{DensifyPlan, StepPlan};
 use device::{DeviceSide, Run};
 use loss_stage::record_loss;
 pub use memory::GpuMemoryPlan;
+use network_stage::NetworkStage;
 use orders::{Order, OrderLog, StepOrder};
 use reports::RawReport;
 use splats::ResidentSplats;
@@ -59,12 +65,20 @@ pub struct GpuBackendOptions {
     /// Tile entries to make room for at first; the buffers grow when a view needs more. `None` makes
     /// a guess from the number of splats.
     pub initial_entries: Option<u32>,
+    /// Bytes that the deformation network's hidden features may take: 8.5 KB a splat, of as many
+    /// splats at a time as fit. When not all do, each step evaluates the network twice for most.
+    pub activation_budget: u64,
 }
 
 impl Default for GpuBackendOptions {
-    /// 512 MiB of photographs, 8 GiB in all.
+    /// 512 MiB of photographs, as much for hidden features, 8 GiB in all.
     fn default() -> Self {
-        Self { target_budget: 512 << 20, memory_budget: 8 << 30, initial_entries: None }
+        Self {
+            target_budget: 512 << 20,
+            memory_budget: 8 << 30,
+            initial_entries: None,
+            activation_budget: 512 << 20,
+        }
     }
 }
 
@@ -74,7 +88,12 @@ impl GpuBackendOptions {
     #[must_use]
     pub fn within(gpu: &Gpu, bytes: u64) -> Self {
         let has_own = gpu.adapter_info().device_type == wgpu::DeviceType::DiscreteGpu;
-        Self { memory_budget: if has_own { u64::MAX } else { bytes }, ..Self::default() }
+        if has_own {
+            return Self { memory_budget: u64::MAX, ..Self::default() };
+        }
+        let default = Self::default();
+        let activation_budget = default.activation_budget.min(bytes / 8);
+        Self { memory_budget: bytes, activation_budget, ..default }
     }
 }
 
@@ -120,11 +139,20 @@ impl GpuBackend {
         &self.device.gpu
     }
 
-    /// The splats as they are on the device: a renderer on the same [`Gpu`] can draw them without a
-    /// copy, between two steps. `None` before [`load`](TrainingBackend::load).
-    #[must_use]
-    pub fn resident_splats(&self) -> Option<&ParameterBuffers> {
-        self.run.as_ref().map(|run| &run.splats.parameters)
+    /// The splats as they are on the device, posed at `time` when a network moves them: a renderer on
+    /// the same [`Gpu`] can draw them without a copy, until the next step is asked for. `None` before
+    /// [`load`](TrainingBackend::load).
+    ///
+    /// # Errors
+    /// [`BackendError`] when the device fails.
+    pub fn resident_splats(&mut self, time: f32) -> Result<Option<ParameterBuffers>, BackendError> {
+        let Some(run) = &mut self.run else { return Ok(None) };
+        let mut encoder = self.device.gpu.device().create_command_encoder(&Default::default());
+        let posed = run.record_pose(&mut encoder, time).map_err(backend_error)?;
+        if run.network.is_some() {
+            self.device.submit(encoder);
+        }
+        Ok(Some(posed))
     }
 
     /// Times that reports had to be waited for.
@@ -148,8 +176,23 @@ impl GpuBackend {
     /// What the run takes on the device.
     #[must_use]
     pub fn memory_plan(&self) -> Option<GpuMemoryPlan> {
-        let splats = &self.run.as_ref()?.splats.parameters;
-        Some(GpuMemoryPlan::new(splats.capacity, splats.sh_degree, self.options.target_budget))
+        let run = self.run.as_ref()?;
+        let splats = &run.splats.parameters;
+        self.plan(splats.capacity, splats.sh_degree, run.network.as_ref().map(NetworkStage::form))
+            .ok()
+    }
+
+    fn plan(
+        &self,
+        capacity: u32,
+        degree: ShDegree,
+        network: Option<&DeformationNetwork>,
+    ) -> Result<GpuMemoryPlan, GpuError> {
+        let plan = GpuMemoryPlan::new(capacity, degree, self.options.target_budget);
+        match network {
+            None => Ok(plan),
+            Some(network) => plan.with_network(network, capacity, self.options.activation_budget),
+        }
     }
 
     /// Errors when nothing can be asked of the device.
@@ -193,7 +236,11 @@ impl GpuBackend {
         let mut encoder = device.gpu.device().create_command_encoder(&Default::default());
         run.raise_degree(device, plan.sh_degree, &mut encoder)?;
         let settings = ForwardSettings { max_sh_degree: plan.sh_degree, depth: false };
-        run.renderer.forward(&mut encoder, &run.splats.parameters, &view.camera, settings)?;
+        let drawn = match &plan.network {
+            None => run.splats.parameters.clone(),
+            Some(network) => run.record_pose(&mut encoder, view.time + network.time_offset)?,
+        };
+        run.renderer.forward(&mut encoder, &drawn, &view.camera, settings)?;
         let replaced = device.loss.prepare(&device.gpu, target.size)?;
         if run.bind_image(device, replaced) {
             self.targets.unbind();
@@ -205,15 +252,19 @@ impl GpuBackend {
             None => bind(),
         };
         let slot = device.reports.take_slot();
-        device.write_step(plan, run.splats.count(), target, slot);
+        run.write_step(device, plan, target, slot);
         {
             let mut pass = timing::begin(&mut encoder, "loss", None);
             record_loss(&device.kernels, &mut pass, &bind_group, target.size);
             run.record_report(&device.kernels, &mut pass);
         }
         let by_image = ImageGradientBuffers { color: &device.loss.gradient, expected_depth: None };
-        let (parameters, gradients) = (&run.splats.parameters, &run.splats.gradients);
-        run.renderer.backward(&mut encoder, parameters, by_image, gradients)?;
+        run.renderer.backward(&mut encoder, &drawn, by_image, &run.splats.gradients)?;
+        if let (Some(_), Some(network)) = (&plan.network, &mut run.network) {
+            let (parameters, gradients) = (&run.splats.parameters, &run.splats.gradients);
+            let mut pass = timing::begin(&mut encoder, "deform_backward", None);
+            network.record_backward(&mut pass, parameters, gradients)?;
+        }
         {
             let mut pass = timing::begin(&mut encoder, "update", None);
             run.record_update(&device.kernels, &mut pass, plan);
@@ -349,10 +400,11 @@ impl TrainingBackend for GpuBackend {
         }
         let capacity = capacity.max(state.splats.len() as u32);
         let degree = state.splats.sh_degree;
-        GpuMemoryPlan::new(capacity, degree, self.options.target_budget)
-            .check(capacity, self.options.memory_budget)?;
-        let entries = self.options.initial_entries;
-        let loaded = device::load(&mut self.device, self.run.take(), state, capacity, entries);
+        let network = state.network.as_ref().map(|trained| &trained.network);
+        let plan = self.plan(capacity, degree, network).map_err(backend_error)?;
+        plan.check(capacity, self.options.memory_budget)?;
+        let last = self.run.take();
+        let loaded = device::load(&mut self.device, last, state, capacity, &self.options);
         self.run = Some(loaded.map_err(backend_error)?);
         self.targets.unbind();
         self.step = state.step;
@@ -362,7 +414,10 @@ impl TrainingBackend for GpuBackend {
     fn state(&mut self) -> Result<TrainingState, BackendError> {
         self.settle()?;
         let Some(run) = &self.run else { return Ok(TrainingState::default()) };
-        run.splats.read(&self.device.gpu, self.step).map_err(backend_error)
+        let mut state = run.splats.read(&self.device.gpu, self.step).map_err(backend_error)?;
+        let network = run.network.as_ref().map(NetworkStage::read).transpose();
+        state.network = network.map_err(backend_error)?;
+        Ok(state)
     }
 
     fn has_target(&self, view: u32) -> bool {
@@ -410,8 +465,10 @@ impl TrainingBackend for GpuBackend {
         let Some(run) = &mut self.run else { return Ok(Frame::default()) };
         let forward =
             ForwardSettings { max_sh_degree: settings.max_sh_degree, depth: settings.depth };
-        let parameters = &run.splats.parameters;
-        let result = run.renderer.forward_and_wait(parameters, camera, forward);
+        let mut encoder = self.device.gpu.device().create_command_encoder(&Default::default());
+        let posed = run.record_pose(&mut encoder, settings.time).map_err(backend_error)?;
+        self.device.submit(encoder);
+        let result = run.renderer.forward_and_wait(&posed, camera, forward);
         result.map(|(frame, _)| frame).map_err(backend_error)
     }
 }

@@ -54,7 +54,7 @@ impl ResidentSplats {
         Ok(fits)
     }
 
-    /// Waits for the state after `step` steps.
+    /// Waits for the splats of the state after `step` steps.
     pub(super) fn read(&self, gpu: &Gpu, step: u32) -> Result<TrainingState, GpuError> {
         Ok(TrainingState {
             step,

@@ -3,7 +3,9 @@
 use std::time::Duration;
 
 use trapeze_gpu::compute::read;
-use trapeze_gpu::{ForwardSettings, Gpu, GpuError, ImageGradientBuffers, PassTimes};
+use trapeze_gpu::{
+    DeformationTimes, ForwardSettings, Gpu, GpuError, ImageGradientBuffers, PassTimes,
+};
 
 use super::loss_stage::record_loss;
 use super::targets::GpuTarget;
@@ -16,6 +18,8 @@ use crate::schedule::StepPlan;
 pub struct GpuStepTimes {
     /// The renderer's two passes, stage by stage.
     pub passes: PassTimes,
+    /// The deformation network's two passes, kernel by kernel; zero in a static scene.
+    pub deform: DeformationTimes,
     /// Loss, its gradient and the report.
     pub loss: Duration,
     /// Adam, regularisers and noise.
@@ -26,7 +30,7 @@ impl GpuStepTimes {
     /// The sum of the stages, without what is between them.
     #[must_use]
     pub fn total(&self) -> Duration {
-        self.passes.total() + self.loss + self.update
+        self.passes.total() + self.deform.total() + self.loss + self.update
     }
 }
 
@@ -112,21 +116,31 @@ impl GpuBackend {
         target: &GpuTarget,
     ) -> Result<Option<GpuStepTimes>, GpuError> {
         let (device, Some(run)) = (&mut self.device, &mut self.run) else { return Ok(None) };
-        let Some(timer) = PassTimer::new(&device.gpu, 2)? else { return Ok(None) };
         device.loss.prepare(&device.gpu, target.size)?;
+        let (canonical, gradients) = (run.splats.parameters.clone(), run.splats.gradients.clone());
+        let mut network = run.network.as_mut().zip(plan.network);
+        let (mut deform, drawn) = match &mut network {
+            None => (DeformationTimes::default(), canonical.clone()),
+            Some((network, step)) => {
+                let time = view.time + step.time_offset;
+                let (times, drawn) = network.timed_forward(&canonical, time)?;
+                let Some(times) = times else { return Ok(None) };
+                (times, drawn)
+            }
+        };
         let by_image = ImageGradientBuffers { color: &device.loss.gradient, expected_depth: None };
-        let passes = run.renderer.timed_passes(
-            &run.splats.parameters,
-            &view.camera,
-            ForwardSettings { max_sh_degree: plan.sh_degree, depth: false },
-            by_image,
-            &run.splats.gradients,
-        )?;
+        let settings = ForwardSettings { max_sh_degree: plan.sh_degree, depth: false };
+        let passes =
+            run.renderer.timed_passes(&drawn, &view.camera, settings, by_image, &gradients)?;
         let Some(passes) = passes else { return Ok(None) };
+        if let Some((network, _)) = &mut network {
+            deform += network.timed_backward(&canonical, &gradients)?.unwrap_or_default();
+        }
         run.bind_image(device, true);
         self.targets.unbind();
         let bind_group = device.bind_loss(run.renderer.image(), target);
-        device.write_step(plan, run.splats.count(), target, 0);
+        run.write_step(device, plan, target, 0);
+        let Some(timer) = PassTimer::new(&device.gpu, 2)? else { return Ok(None) };
         let mut encoder = device.gpu.device().create_command_encoder(&Default::default());
         {
             let mut pass = begin(&mut encoder, "loss", Some((&timer.queries, 0)));
@@ -140,6 +154,6 @@ impl GpuBackend {
         timer.resolve(&mut encoder);
         device.submit(encoder);
         let times = timer.read(&device.gpu)?;
-        Ok(Some(GpuStepTimes { passes, loss: times[0], update: times[1] }))
+        Ok(Some(GpuStepTimes { passes, deform, loss: times[0], update: times[1] }))
     }
 }

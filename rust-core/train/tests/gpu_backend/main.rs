@@ -1,5 +1,6 @@
 //! The GPU backend as a whole, beside the CPU's.
 
+mod deformation;
 mod runs;
 mod steps;
 #[path = "../support/mod.rs"]

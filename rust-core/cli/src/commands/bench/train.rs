@@ -93,6 +93,9 @@ struct Row {
 /// Medians of the stages of a step on the GPU, ms.
 #[derive(Debug, Serialize)]
 struct StageMedians {
+    /// The deformation network forward and backward; zero in a static scene.
+    deform: f64,
+    deform_backward: f64,
     project: f64,
     sort: f64,
     bin: f64,
@@ -114,6 +117,8 @@ impl StageMedians {
             Timing::of(&times.iter().map(pick).collect::<Vec<_>>()).median_ms
         };
         Some(Self {
+            deform: median(|t| t.deform.forward()),
+            deform_backward: median(|t| t.deform.backward()),
             project: median(|t| t.passes.project),
             sort: median(|t| t.passes.sort),
             bin: median(|t| t.passes.bin),
@@ -137,6 +142,8 @@ impl StageMedians {
             ("rasterize_backward", self.rasterize_backward),
             ("sum_slots", self.sum_slots),
             ("project_backward", self.project_backward),
+            ("deform", self.deform),
+            ("deform_backward", self.deform_backward),
             ("update", self.update),
             ("total", self.total),
         ];
