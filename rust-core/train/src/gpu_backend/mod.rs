@@ -40,11 +40,11 @@ use trapeze_gpu::{
 };
 use trapeze_scene::{Camera, DeformationNetwork, Frame, FrameSettings, ShDegree};
 
-use crate::TrainingState;
 use crate::backend::{BackendError, StepReport, TrainingBackend, TrainingView};
 use crate::loss::TargetImage;
 use crate::report_queue::ReportQueue;
 use crate::schedule::{DensifyPlan, StepPlan};
+use crate::{TrainedNetwork, TrainingState};
 use device::{DeviceSide, Run};
 use loss_stage::record_loss;
 pub use memory::GpuMemoryPlan;
@@ -238,7 +238,7 @@ impl GpuBackend {
         let settings = ForwardSettings { max_sh_degree: plan.sh_degree, depth: false };
         let drawn = match &plan.network {
             None => run.splats.parameters.clone(),
-            Some(network) => run.record_pose(&mut encoder, view.time + network.time_offset)?,
+            Some(_) => run.record_pose(&mut encoder, plan.time_of(view))?,
         };
         run.renderer.forward(&mut encoder, &drawn, &view.camera, settings)?;
         let replaced = device.loss.prepare(&device.gpu, target.size)?;
@@ -384,6 +384,11 @@ impl GpuBackend {
 impl TrainingBackend for GpuBackend {
     fn working_bytes(&self, splats: u32, pixels: u64) -> u64 {
         memory::working_bytes(splats, pixels)
+    }
+
+    fn network_working_bytes(&self, splats: u32) -> u64 {
+        let network = TrainedNetwork::standard(0).network;
+        NetworkStage::bytes(&network, splats, self.options.activation_budget).unwrap_or(u64::MAX)
     }
 
     fn target_budget(&self) -> u64 {

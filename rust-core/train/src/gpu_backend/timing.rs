@@ -121,9 +121,8 @@ impl GpuBackend {
         let mut network = run.network.as_mut().zip(plan.network);
         let (mut deform, drawn) = match &mut network {
             None => (DeformationTimes::default(), canonical.clone()),
-            Some((network, step)) => {
-                let time = view.time + step.time_offset;
-                let (times, drawn) = network.timed_forward(&canonical, time)?;
+            Some((network, _)) => {
+                let (times, drawn) = network.timed_forward(&canonical, plan.time_of(view))?;
                 let Some(times) = times else { return Ok(None) };
                 (times, drawn)
             }
