@@ -1,4 +1,4 @@
-//! `trapeze train` and `trapeze eval`, on the bundled photographs at a quarter of their size.
+//! `trapeze train` and `trapeze eval`, on the bundled photographs at a fraction of their size.
 
 mod support;
 
@@ -9,6 +9,7 @@ use std::time::Duration;
 
 use serde_json::Value;
 use support::{json, load, refusal, succeed};
+use trapeze_scene::DeformationNetwork;
 
 fn photographs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/sample-dataset/transforms_static.json")
@@ -17,7 +18,7 @@ fn photographs() -> PathBuf {
 /// `train` with 800 splats on images of 50 × 50 pixels.
 fn training(out: &Path, extra: &[&str]) -> Vec<OsString> {
     let mut words = arguments!["train", photographs(), "--out", out].to_vec();
-    words.extend(["--downscale", "4", "--random-splats", "800"].map(Into::into));
+    words.extend(["--downscale", "4", "--random-splats", "800", "--static"].map(Into::into));
     words.extend(extra.iter().map(Into::into));
     words
 }
@@ -74,6 +75,43 @@ fn a_run_reports_as_json_lines_and_leaves_a_scene_that_eval_agrees_with() {
     let again = [&options[..], &["--resume"]].concat();
     let text = succeed(&training(&out, &again));
     assert_eq!(serde_json::from_str::<Value>(&text).unwrap(), *last);
+}
+
+#[test]
+fn photographs_of_many_times_make_a_scene_folder_that_moves() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("scene");
+    let photographs = photographs().with_file_name("");
+    let mut words = arguments!["train", &photographs, "--out", &out, "--json"].to_vec();
+    let options = "--downscale 8 --random-splats 300 --steps 60 --warm-up 20 --fixed --sh-degree 0";
+    words.extend(options.split(' ').map(Into::into));
+    let lines = lines(&succeed(&words));
+    let last = lines.last().unwrap();
+    assert_eq!(last["done"], true);
+
+    let scene = load(&out);
+    assert!(scene.deformation.as_ref().is_some_and(DeformationNetwork::is_standard));
+    let motion = scene.motion.as_ref().unwrap();
+    assert!(motion.values.len() == 300 && motion.values.iter().any(|&v| v > 0.0));
+    assert!(motion.recommended_percentile.is_some());
+    for name in ["point_cloud.ply", "weights.bin", "mask.bin", "mask.json", "training.json"] {
+        assert!(out.join(name).is_file(), "{name}");
+    }
+    let summary: Value =
+        serde_json::from_slice(&std::fs::read(out.join("training.json")).unwrap()).unwrap();
+    assert_eq!(summary["config"]["deformation"]["warm_up"], 20);
+    assert_eq!(summary["config"]["deformation"]["time_noise"], 0.0);
+    assert_eq!(summary["config"]["background"], "random");
+    assert!(summary["motion"]["moving_splats"].as_u64().unwrap() <= 300);
+
+    let figures = json(&arguments!["eval", &out, &photographs, "--downscale", "8", "--json"]);
+    assert_eq!(figures["psnr"], last["test_psnr"]);
+    let described = json(&arguments!["info", &out, "--json"]);
+    assert!(described["deformation"].is_object() || described["deformation"].is_string());
+    let image = folder.path().join("image.png");
+    let render = arguments!["render", &out, "--time", "0.5", "--size", "64x48", "--out", &image];
+    succeed(&render);
+    assert!(image.is_file());
 }
 
 #[test]

@@ -130,6 +130,7 @@ fn train(arguments: &Arguments) -> Result<(), CliError> {
         "--out",
         &out,
         "--resume",
+        "--static",
         "--steps",
         &steps,
         "--preview",

@@ -4,7 +4,7 @@ use clap::Args;
 use trapeze_formats::dataset::Dataset;
 use trapeze_scene::ShDegree;
 use trapeze_train::config::{Background, TrainingConfig};
-use trapeze_train::{background_for_training, splat_ceiling};
+use trapeze_train::{background_for_training, deformation_for_training, splat_ceiling};
 
 use crate::dataset_input::{DatasetArguments, parse_color};
 use crate::error::CliError;
@@ -33,6 +33,14 @@ pub(crate) struct TrainingArguments {
     /// default random where photographs have transparency, else black.
     #[arg(long, value_parser = parse_background)]
     background: Option<Background>,
+    /// Train a static scene, whatever the times of the photographs. By default a scene of photographs
+    /// with more than one time moves.
+    #[arg(long = "static")]
+    is_static: bool,
+    /// Steps that a scene that moves is trained as if it did not, before its deformation network
+    /// takes part; by default 3 of 40.
+    #[arg(long, value_name = "N", conflicts_with = "is_static")]
+    warm_up: Option<u32>,
     /// Random splats to start from where a dataset has no points.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     random_splats: Option<u32>,
@@ -74,6 +82,17 @@ impl TrainingArguments {
             Some(background) => background,
             None => background_for_training(dataset)?,
         };
+        if !self.is_static {
+            config.deformation = deformation_for_training(dataset, self.steps)?;
+        }
+        match (self.warm_up, &mut config.deformation) {
+            (None, _) => {}
+            (Some(steps), Some(deformation)) => deformation.warm_up = steps,
+            (Some(_), None) => {
+                let expected = "photographs of more than one time";
+                return Err(CliError::argument("--warm-up", expected, "one"));
+            }
+        }
         if let Some(count) = self.random_splats {
             config.initial.random_count = count;
         }

@@ -4,6 +4,7 @@ use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use std::time::Duration;
 use trapeze_train::Trainer;
 use trapeze_train::backend::TrainingBackend;
+use trapeze_train::config::DeformationTraining;
 use trapeze_train::trainer::{Event, Proposal, Trial};
 
 /// A bar with figures on a terminal; decisions as lines, there and elsewhere.
@@ -21,6 +22,9 @@ impl Display {
             trainer.splat_count(),
             memory.total().div_ceil(1 << 20),
         );
+        if let Some(deformation) = &trainer.config().deformation {
+            eprintln!("{}", describe_deformation(deformation));
+        }
         let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} {msg}")
             .unwrap_or_else(|_| ProgressStyle::default_bar());
         let bar = ProgressBar::new(trainer.config().steps.into()).with_style(style);
@@ -64,6 +68,16 @@ impl Display {
     fn line(&self, text: &str) {
         self.bar.suspend(|| eprintln!("{text}"));
     }
+}
+
+fn describe_deformation(deformation: &DeformationTraining) -> String {
+    let noise = if deformation.time_noise > 0.0 {
+        let (noise, steps) = (deformation.time_noise, deformation.noisy_steps);
+        format!("times with noise of {noise:.2e} that fades over {steps} steps")
+    } else {
+        "exact times".into()
+    };
+    format!("the scene moves: its network takes part from step {} on, {noise}", deformation.warm_up)
 }
 
 fn describe(trial: &Trial) -> String {

@@ -13,9 +13,12 @@ use clap::{Args, ValueEnum};
 use sysinfo::System;
 use trapeze_formats::dataset::Dataset;
 use trapeze_formats::load_scene;
+use trapeze_scene::Camera;
 use trapeze_train::backend::TrainingBackend;
 use trapeze_train::trainer::{Event, TrainingSummary};
-use trapeze_train::{CpuBackend, GpuBackend, GpuBackendOptions, Trainer, TrainerOptions};
+use trapeze_train::{
+    CpuBackend, GpuBackend, GpuBackendOptions, Trainer, TrainerOptions, with_measured_motion,
+};
 
 use super::eval::evaluate_scene;
 use super::render::{self, open_gpu};
@@ -137,7 +140,6 @@ fn train<B: TrainingBackend>(
     folder: &OutputFolder,
     mut trainer: Trainer<B>,
 ) -> Result<(), CliError> {
-    warn_of_times(dataset);
     let interrupt = Interrupt::listen();
     let mut metrics = Metrics::to(arguments.json.as_deref(), trainer.step())?;
     let mut previews = arguments.preview.map(|every| Previews::new(folder, every, trainer.step()));
@@ -166,9 +168,14 @@ fn train<B: TrainingBackend>(
         }
     }
     display.finish();
-    let scene = folder.save_scene(&trainer.scene()?, arguments.format)?;
+    let scene = trainer.scene()?;
     let mut summary = trainer.summary();
     drop(trainer);
+    let cameras: Vec<Camera> =
+        dataset.training_views().map(|index| dataset.views[index].camera.clone()).collect();
+    let (scene, motion) = with_measured_motion(scene, &cameras)?;
+    summary.motion = motion;
+    let scene = folder.save_scene(&scene, arguments.format)?;
     // The file is evaluated, as anyone else would load it, not what was in memory.
     let views: Vec<usize> = dataset.test_views().collect();
     let renderer = arguments.backend.renderer();
@@ -176,15 +183,6 @@ fn train<B: TrainingBackend>(
     folder.finish(&summary)?;
     describe(&summary, &scene);
     metrics.finish(&summary)
-}
-
-/// A static scene is what is trained.
-fn warn_of_times(dataset: &Dataset) {
-    let mut times = dataset.training_views().filter_map(|index| dataset.views[index].time);
-    let first = times.next();
-    if times.any(|time| Some(time) != first) {
-        tracing::warn!("the photographs have different times: a static scene is trained on all");
-    }
 }
 
 fn describe(summary: &TrainingSummary, scene: &std::path::Path) {
@@ -201,6 +199,17 @@ fn describe(summary: &TrainingSummary, scene: &std::path::Path) {
         summary.seconds,
         summary.steps_per_second,
     );
+    if let Some(motion) = &summary.motion {
+        eprintln!(
+            "{} of {} splats move, the others may rest ({} %): {}",
+            motion.moving_splats,
+            summary.splats,
+            motion.recommended_percentile,
+            motion.worst_psnr.map_or("equal images".into(), |psnr| {
+                format!("{psnr:.1} dB from the full network at worst")
+            }),
+        );
+    }
 }
 
 /// Bytes that may be taken without pushing others out, the limit of a container respected.

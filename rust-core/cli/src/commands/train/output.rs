@@ -4,7 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use trapeze_formats::spz::{SpzOptions, write_spz};
-use trapeze_formats::{ParseError, ReadError, ply, write_atomically};
+use trapeze_formats::{
+    ParseError, ReadError, ply, write_atomically, write_mask_bin, write_mask_json,
+    write_weights_bin,
+};
 use trapeze_scene::Scene;
 use trapeze_train::checkpoint::CheckpointFolder;
 use trapeze_train::trainer::TrainingSummary;
@@ -63,7 +66,8 @@ impl OutputFolder {
         Ok(Some(summary))
     }
 
-    /// Writes the splats; returns the file.
+    /// Writes the splats, and of a scene that moves the original app's files beside them. Returns what
+    /// is to be loaded: the file, or this folder.
     pub(super) fn save_scene(
         &self,
         scene: &Scene,
@@ -77,7 +81,13 @@ impl OutputFolder {
             SceneFormat::Ply => ply::write_ply(&path, scene)?,
             SceneFormat::Spz => write_spz(&path, scene, &SpzOptions::default())?,
         }
-        Ok(path)
+        let Some(network) = &scene.deformation else { return Ok(path) };
+        write_weights_bin(&self.join("weights.bin"), network)?;
+        if let Some(motion) = &scene.motion {
+            write_mask_bin(&self.join("mask.bin"), motion)?;
+            write_mask_json(&self.join("mask.json"), motion)?;
+        }
+        Ok(self.path.clone())
     }
 
     /// Writes the summary; then nothing is left to resume and the checkpoints go.
