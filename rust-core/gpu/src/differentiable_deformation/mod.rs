@@ -18,12 +18,13 @@
 //!
 //! # Floor
 //!
-//! The standard network has 503 808 weights. A splat costs 1.01 MFLOP forward, as much again for the
-//! weights' gradients, and 0.96 for those of the layers' inputs: 2.98 in all, 119 GFLOP for 40 000
+//! The standard network has 504 320 weights. A splat costs 1.01 MFLOP forward, as much again for the
+//! weights' gradients, and 0.92 for those of the layers' inputs: 2.94 in all, 118 GFLOP for 40 000
 //! splats. In single precision on an H100 (67 TFLOP/s) that is 1.8 ms; the fused kernel of inference
-//! reaches 32 TFLOP/s there, which would be 3.7 ms. Memory is not the limit: a hidden layer reads and
-//! writes 1 KiB a splat three times, 40 000 splats × 8 layers are 1 GB, 0.3 ms at 3.3 TB/s. 27
-//! dispatches behind each other cost about 0.1 ms. Prediction: 4 to 5 ms.
+//! reaches 32 TFLOP/s there, which would be 3.7 ms. Memory is not the limit: a hidden layer moves 7 KiB
+//! a splat (2 forward, 2 for the weights, 3 for its input), 40 000 splats × 8 layers 2.3 GB, 0.7 ms at
+//! 3.3 TB/s if nothing stays in caches. 37 dispatches behind each other cost about 0.1 ms. Prediction: 4
+//! to 5 ms.
 
 mod bindings;
 mod dispatches;
