@@ -20,7 +20,7 @@ pub(crate) fn open_device(backend: Backend, work: &Work) -> Result<Device, Failu
     guarded(|| {
         work.step(Stage::Compiling, None)?;
         let gpu = match backend {
-            Backend::Cpu => None,
+            Backend::Cpu => return Ok(Device::cpu()),
             Backend::Gpu => Some(open()?),
             Backend::Automatic => match open() {
                 Ok(gpu) => Some(gpu),
@@ -43,6 +43,11 @@ fn open() -> Result<Gpu, GpuError> {
 }
 
 impl Device {
+    /// The CPU.
+    pub(crate) fn cpu() -> Self {
+        Self { gpu: None }
+    }
+
     pub(crate) fn name(&self) -> String {
         guarded_or(String::new(), || match self.gpu() {
             Ok(Some(gpu)) => gpu.adapter_info().name,

@@ -59,7 +59,7 @@ mod ffi {
         Folder,
     }
 
-    // Which devices may draw.
+    // Which devices may draw, or train.
     enum Backend {
         // The graphics device, or the CPU where there is none.
         Automatic,
@@ -204,6 +204,7 @@ mod ffi {
         harmonics_degree: u32,
         // Bytes; 0 asks the system.
         memory_limit: u64,
+        backend: Backend,
     }
 
     #[swift_bridge(swift_repr = "struct")]
@@ -436,12 +437,15 @@ mod ffi {
     extern "Rust" {
         #[swift_bridge(Sendable)]
         type Trainer;
+        // Trains on the device where `backend` allows it and it is faster than the CPU.
         fn make_trainer(
+            device: &Device,
             dataset: &Dataset,
             parameters: TrainParameters,
             folder: String,
             work: &Work,
         ) -> Result<Trainer, Failure>;
+        fn device_name(self: &Trainer) -> String;
         fn current_step(self: &Trainer) -> u32;
         fn is_finished(self: &Trainer) -> bool;
         // Takes steps for a tenth of a second, at least one.

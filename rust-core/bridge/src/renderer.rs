@@ -44,11 +44,17 @@ struct State {
     dynamic: Option<(f32, u64)>,
 }
 
-/// How a scene is kept on the device.
+/// How a scene is kept on the device; as exactly as can be, by default.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Options {
     pub(crate) precision: NetworkPrecision,
     pub(crate) max_sh_degree: ShDegree,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { precision: NetworkPrecision::Single, max_sh_degree: ShDegree::Three }
+    }
 }
 
 /// Draws from one that is timed to the next: a timed one waits for the device, which at every frame
@@ -225,13 +231,10 @@ impl Renderer {
         })
     }
 
-    /// Another scene on the same device, at its most exact: for pictures that are not for the screen.
+    /// Another scene on the same device, as exactly as can be: for pictures that are not for the screen.
     pub(crate) fn offscreen(&self, scene: Arc<trapeze_scene::Scene>) -> Result<Backend, Failure> {
         self.with(|state| state.expect_awake())?;
-        let precision = NetworkPrecision::Single;
-        guarded(|| {
-            Backend::new(&self.device, scene, Options { precision, max_sh_degree: ShDegree::Three })
-        })
+        guarded(|| Backend::new(&self.device, scene, Options::default()))
     }
 
     /// Gives back the buffers on the device, which the next frame makes again at their first size.

@@ -1,6 +1,7 @@
 //! A training run, driven a few steps at a time.
 
 mod finish;
+mod run;
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -13,11 +14,10 @@ use trapeze_scene::{Rgba8, ShDegree};
 use trapeze_train::checkpoint::CheckpointFolder;
 use trapeze_train::config::{Background, TrainingConfig};
 use trapeze_train::trainer::{Event, Report};
-use trapeze_train::{
-    CpuBackend, TrainerOptions, background_for_training, splat_ceiling, trainer::Trainer as Run,
-};
+use trapeze_train::{TrainerOptions, background_for_training, splat_ceiling};
 
 use crate::dataset::Dataset;
+use crate::device::Device;
 use crate::failure::{Contained, Failure, guarded, guarded_or, poisoned};
 use crate::ffi::{
     Lens, Stage, TestFigures, TrainEventFigures, TrainEventKind, TrainFigures, TrainParameters,
@@ -26,6 +26,7 @@ use crate::frame::camera;
 use crate::image::Image;
 use crate::scene::Scene;
 use crate::work::Work;
+use run::TrainingRun;
 
 /// A run, and what it has told.
 ///
@@ -34,7 +35,8 @@ use crate::work::Work;
 pub(crate) struct Trainer {
     dataset: Arc<dataset::Dataset>,
     folder: PathBuf,
-    run: Mutex<Contained<Run<CpuBackend>>>,
+    device: Device,
+    run: Mutex<Contained<Box<dyn TrainingRun>>>,
     news: Mutex<News>,
 }
 
@@ -51,12 +53,11 @@ struct News {
 const MOST_EVENTS: usize = 1000;
 /// How long steps are taken before news are looked at.
 const TURN: Duration = Duration::from_millis(100);
-/// Reports of a run, about, and the fewest and most steps between two.
-const REPORTS: u32 = 200;
-const REPORT_INTERVALS: (u32, u32) = (5, 100);
 
-/// Prepares a run, or goes on with the one whose checkpoints are in `folder`.
+/// Prepares a run, or goes on with the one whose checkpoints are in `folder`: on `device`, unless the
+/// parameters or what it is say otherwise.
 pub(crate) fn make_trainer(
+    device: &Device,
     dataset: &Dataset,
     parameters: TrainParameters,
     folder: String,
@@ -71,25 +72,26 @@ pub(crate) fn make_trainer(
             limit => Some(limit),
         };
         let config = configuration(dataset, &parameters, memory)?;
-        work.check()?;
-        let (least, most) = REPORT_INTERVALS;
+        work.step(Stage::Compiling, None)?;
+        let device = run::training_device(device, parameters.backend)?;
         let options = TrainerOptions {
             checkpoints: Some(checkpoints(&folder)),
             memory_limit: memory,
-            report_interval: (config.steps / REPORTS).clamp(least, most),
+            report_interval: run::report_interval(&device, config.steps)?,
             ..TrainerOptions::default()
         };
-        let run = Run::resume(dataset.shared(), config, CpuBackend::default(), options)?;
+        let run = run::resume(&device, dataset.shared(), config, options)?;
         let news = News {
             step: run.step(),
             is_finished: run.is_finished(),
-            report: nothing_yet(&run),
+            report: nothing_yet(run.as_ref()),
             events: VecDeque::new(),
             rollback_reason: String::new(),
         };
         Ok(Trainer {
             dataset: dataset.shared().clone(),
             folder,
+            device,
             run: Mutex::new(Contained::new(run)),
             news: Mutex::new(news),
         })
@@ -134,7 +136,7 @@ fn available_memory() -> Option<u64> {
     None
 }
 
-fn nothing_yet(run: &Run<CpuBackend>) -> TrainFigures {
+fn nothing_yet(run: &dyn TrainingRun) -> TrainFigures {
     TrainFigures {
         step: run.step(),
         steps: run.config().steps,
@@ -169,6 +171,11 @@ impl std::fmt::Debug for Trainer {
 }
 
 impl Trainer {
+    /// What it trains on.
+    pub(crate) fn device_name(&self) -> String {
+        self.device.name()
+    }
+
     pub(crate) fn current_step(&self) -> u32 {
         guarded_or(0, || self.news.lock().map_or(0, |news| news.step))
     }
@@ -195,7 +202,7 @@ impl Trainer {
             let start = Instant::now();
             loop {
                 work.check()?;
-                run.advance(1, &mut |event| self.tell(event))?;
+                run.advance(&mut |event| self.tell(event))?;
                 let mut news = self.news.lock().map_err(poisoned)?;
                 news.step = run.step();
                 news.is_finished = run.is_finished();
@@ -242,11 +249,11 @@ impl Trainer {
 
     /// Saves the state on disk, so that another process can go on with the same bits.
     pub(crate) fn checkpoint(&self) -> Result<(), Failure> {
-        self.with(|run| Ok(run.save(&mut |event| self.tell(event)).map(drop)?))
+        self.with(|run| Ok(run.save(&mut |event| self.tell(event))?))
     }
 
     pub(crate) fn finish(&self, work: &Work) -> Result<TestFigures, Failure> {
-        self.with(|run| finish::finish(run, &self.dataset, &self.folder, work))
+        self.with(|run| finish::finish(run, &self.device, &self.dataset, &self.folder, work))
     }
 
     /// The splats as they are now, from a camera in world coordinates.
@@ -258,7 +265,7 @@ impl Trainer {
                 Background::Fixed(color) => color,
                 Background::Random => [0.0; 3],
             };
-            let frame = run.render(&camera, 0.0)?;
+            let frame = run.render(&camera)?;
             Ok(Image::new(Rgba8::of_colors(&frame, Some(background))))
         })
     }
@@ -269,9 +276,9 @@ impl Trainer {
 
     fn with<T>(
         &self,
-        body: impl FnOnce(&mut Run<CpuBackend>) -> Result<T, Failure>,
+        body: impl FnOnce(&mut dyn TrainingRun) -> Result<T, Failure>,
     ) -> Result<T, Failure> {
-        guarded(|| body(self.run.lock().map_err(poisoned)?.get_mut()))
+        guarded(|| body(self.run.lock().map_err(poisoned)?.get_mut().as_mut()))
     }
 
     /// Keeps an event until somebody asks.
@@ -288,3 +295,6 @@ impl Trainer {
         news.events.push_back(event);
     }
 }
+
+#[cfg(test)]
+mod tests;

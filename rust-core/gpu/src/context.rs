@@ -128,6 +128,12 @@ impl Gpu {
         self.inner.adapter.get_info()
     }
 
+    /// Whether the adapter is no hardware but the CPU behind a driver (lavapipe, SwiftShader).
+    #[must_use]
+    pub fn is_software(&self) -> bool {
+        self.adapter_info().device_type == wgpu::DeviceType::Cpu
+    }
+
     /// Limits that are in force.
     #[must_use]
     pub fn limits(&self) -> &wgpu::Limits {

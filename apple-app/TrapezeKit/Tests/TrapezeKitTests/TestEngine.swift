@@ -18,6 +18,8 @@ final class TestEngine: Engine, @unchecked Sendable {
   let scene: TestScene
   private(set) var renderers: [TestRenderer] = []
   var trainer = TestTrainer()
+  /// What the last run was asked for.
+  private(set) var asked: TrainingConfiguration?
   var modelsAreThere = true
 
   init(scene: TestScene = .twoObjects()) { self.scene = scene }
@@ -75,7 +77,8 @@ final class TestEngine: Engine, @unchecked Sendable {
   func makeTrainer(
     dataset: URL, configuration: TrainingConfiguration
   ) -> ProgressStream<any TrainEngine> {
-    stream(.preparing, .training) { [self] in trainer }
+    asked = configuration
+    return stream(.preparing, .training) { [self] in trainer }
   }
 
   func makeSearcher(models: URL) -> ProgressStream<any SearchEngine> {

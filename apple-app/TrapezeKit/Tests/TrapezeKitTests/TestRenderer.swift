@@ -134,6 +134,7 @@ final class TestSearcher: SearchEngine {
 actor TestTrainer: TrainEngine {
   private nonisolated let counter = Counter()
   private(set) var checkpoints: [Int] = []
+  nonisolated let deviceName = "test"
   nonisolated let steps: Int
   nonisolated let fault: EngineError?
 

@@ -23,8 +23,10 @@ import Testing
     let (model, _) = try await ready(engine)
     guard case .ready(let summary) = model.phase else { throw EngineError(.internalFault, "") }
     #expect(summary.viewCount == 20 && model.datasetName == "photos")
+    model.device = .cpu
     model.start()
     await model.settle()
+    #expect(engine.asked?.device == .cpu && model.deviceName == "test")
     #expect(model.phase == .finished(TestFigures(psnr: 30, ssim: 0.9)))
     #expect(model.reports.map(\.step) == Array(1...20))
     #expect(model.preview != nil && model.secondsLeft == 0)

@@ -6,13 +6,14 @@ use std::sync::Arc;
 use trapeze_formats::dataset::Dataset;
 use trapeze_formats::{load_scene, ply, write_atomically};
 use trapeze_scene::FrameSettings;
-use trapeze_train::CpuBackend;
 use trapeze_train::evaluation::evaluate;
-use trapeze_train::trainer::Trainer as Run;
 
 use super::checkpoints;
+use super::run::TrainingRun;
+use crate::device::Device;
 use crate::failure::Failure;
 use crate::ffi::{Stage, TestFigures};
+use crate::renderer::{Backend, Options};
 use crate::work::Work;
 
 /// Name of the splats in the folder of a run.
@@ -31,7 +32,8 @@ pub(super) fn refuse_finished(folder: &Path) -> Result<(), Failure> {
 
 /// Writes the scene and the summary, and removes the checkpoints.
 pub(super) fn finish(
-    run: &mut Run<CpuBackend>,
+    run: &mut dyn TrainingRun,
+    device: &Device,
     dataset: &Dataset,
     folder: &Path,
     work: &Work,
@@ -41,7 +43,7 @@ pub(super) fn finish(
     ply::write_ply(&splats, &run.scene()?)?;
     let mut summary = run.summary();
     // The file is evaluated, as anyone else would load it, not what was in memory.
-    let mut renderer = trapeze_cpu::Renderer::new(Arc::new(load_scene(&splats)?));
+    let mut renderer = Backend::new(device, Arc::new(load_scene(&splats)?), Options::default())?;
     let views: Vec<usize> = dataset.test_views().collect();
     let mut done = 0;
     summary.test = evaluate(dataset, &views, None, |index| {
@@ -50,7 +52,7 @@ pub(super) fn finish(
         let view = &dataset.views[index];
         let time = view.time.unwrap_or(0.0);
         let settings = FrameSettings { time, ..FrameSettings::default() };
-        Ok::<_, Failure>(renderer.render(&view.camera, &settings)?)
+        renderer.render(&view.camera, &settings)
     })?;
     write_atomically(&folder.join(SUMMARY), |file| {
         serde_json::to_writer_pretty(&mut *file, &summary)?;

@@ -27,8 +27,8 @@ public func check_device(_ device: DeviceRef, _ work: WorkRef) throws -> SelfChe
 public func inspect_dataset<GenericIntoRustString: IntoRustString>(_ path: GenericIntoRustString, _ downscale: UInt32, _ holdout: UInt32) throws -> Dataset {
     try { let val = __swift_bridge__$inspect_dataset({ let rustString = path.intoRustString(); rustString.isOwned = false; return rustString.ptr }(), downscale, holdout); if val.is_ok { return Dataset(ptr: val.ok_or_err!) } else { throw Failure(ptr: val.ok_or_err!) } }()
 }
-public func make_trainer<GenericIntoRustString: IntoRustString>(_ dataset: DatasetRef, _ parameters: TrainParameters, _ folder: GenericIntoRustString, _ work: WorkRef) throws -> Trainer {
-    try { let val = __swift_bridge__$make_trainer(dataset.ptr, parameters.intoFfiRepr(), { let rustString = folder.intoRustString(); rustString.isOwned = false; return rustString.ptr }(), work.ptr); if val.is_ok { return Trainer(ptr: val.ok_or_err!) } else { throw Failure(ptr: val.ok_or_err!) } }()
+public func make_trainer<GenericIntoRustString: IntoRustString>(_ device: DeviceRef, _ dataset: DatasetRef, _ parameters: TrainParameters, _ folder: GenericIntoRustString, _ work: WorkRef) throws -> Trainer {
+    try { let val = __swift_bridge__$make_trainer(device.ptr, dataset.ptr, parameters.intoFfiRepr(), { let rustString = folder.intoRustString(); rustString.isOwned = false; return rustString.ptr }(), work.ptr); if val.is_ok { return Trainer(ptr: val.ok_or_err!) } else { throw Failure(ptr: val.ok_or_err!) } }()
 }
 public enum Stage {
     case Preparing
@@ -1154,23 +1154,25 @@ public struct TrainParameters {
     public var max_splats: UInt32
     public var harmonics_degree: UInt32
     public var memory_limit: UInt64
+    public var backend: Backend
 
-    public init(steps: UInt32,max_splats: UInt32,harmonics_degree: UInt32,memory_limit: UInt64) {
+    public init(steps: UInt32,max_splats: UInt32,harmonics_degree: UInt32,memory_limit: UInt64,backend: Backend) {
         self.steps = steps
         self.max_splats = max_splats
         self.harmonics_degree = harmonics_degree
         self.memory_limit = memory_limit
+        self.backend = backend
     }
 
     @inline(__always)
     func intoFfiRepr() -> __swift_bridge__$TrainParameters {
-        { let val = self; return __swift_bridge__$TrainParameters(steps: val.steps, max_splats: val.max_splats, harmonics_degree: val.harmonics_degree, memory_limit: val.memory_limit); }()
+        { let val = self; return __swift_bridge__$TrainParameters(steps: val.steps, max_splats: val.max_splats, harmonics_degree: val.harmonics_degree, memory_limit: val.memory_limit, backend: val.backend.intoFfiRepr()); }()
     }
 }
 extension __swift_bridge__$TrainParameters {
     @inline(__always)
     func intoSwiftRepr() -> TrainParameters {
-        { let val = self; return TrainParameters(steps: val.steps, max_splats: val.max_splats, harmonics_degree: val.harmonics_degree, memory_limit: val.memory_limit); }()
+        { let val = self; return TrainParameters(steps: val.steps, max_splats: val.max_splats, harmonics_degree: val.harmonics_degree, memory_limit: val.memory_limit, backend: val.backend.intoSwiftRepr()); }()
     }
 }
 extension __swift_bridge__$Option$TrainParameters {
@@ -2654,6 +2656,10 @@ public class TrainerRef {
     }
 }
 extension TrainerRef {
+    public func device_name() -> RustString {
+        RustString(ptr: __swift_bridge__$Trainer$device_name(ptr))
+    }
+
     public func current_step() -> UInt32 {
         __swift_bridge__$Trainer$current_step(ptr)
     }

@@ -18,6 +18,9 @@ public protocol TrainEngine: AnyObject, Sendable {
   /// The scene as it is now.
   func scene() async throws -> any SceneEngine
 
+  /// Name of what it trains on: the graphics device, or the CPU.
+  var deviceName: String { get }
+
   /// Cameras of the dataset's views, for the live view.
   var cameras: [Camera] { get }
 }
@@ -36,10 +39,12 @@ public struct TrainingConfiguration: Sendable, Equatable, Codable {
   public var folder: URL
   /// Bytes that the run may take; `nil` asks the system.
   public var memoryLimit: UInt64?
+  /// What it trains on.
+  public var device: TrainingDevice
 
   public init(
     steps: Int, maxSplats: Int?, harmonicsDegree: Int, downscale: Int, holdout: Int?,
-    folder: URL, memoryLimit: UInt64? = nil
+    folder: URL, memoryLimit: UInt64? = nil, device: TrainingDevice = .automatic
   ) {
     self.steps = steps
     self.maxSplats = maxSplats
@@ -48,7 +53,18 @@ public struct TrainingConfiguration: Sendable, Equatable, Codable {
     self.holdout = holdout
     self.folder = folder
     self.memoryLimit = memoryLimit
+    self.device = device
   }
+}
+
+/// What a run may train on.
+public enum TrainingDevice: String, Sendable, Codable, CaseIterable, Identifiable {
+  /// The graphics device where there is one that is faster, else the CPU.
+  case automatic
+  case gpu
+  case cpu
+
+  public var id: Self { self }
 }
 
 /// A dataset in numbers.

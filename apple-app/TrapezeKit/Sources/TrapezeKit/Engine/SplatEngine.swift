@@ -57,7 +57,7 @@ public final class SplatEngine: Engine {
   public func makeTrainer(
     dataset location: URL, configuration: TrainingConfiguration
   ) -> ProgressStream<any TrainEngine> {
-    CoreQueue.concurrent.stream { work in
+    CoreQueue.concurrent.stream { [self] work in
       let dataset = try inspect_dataset(
         location.path, UInt32(clamping: configuration.downscale),
         UInt32(clamping: configuration.holdout ?? 0))
@@ -65,12 +65,14 @@ public final class SplatEngine: Engine {
         steps: UInt32(clamping: configuration.steps),
         max_splats: UInt32(clamping: configuration.maxSplats ?? 0),
         harmonics_degree: UInt32(clamping: configuration.harmonicsDegree),
-        memory_limit: configuration.memoryLimit ?? Self.availableMemory
+        memory_limit: configuration.memoryLimit ?? Self.availableMemory,
+        backend: configuration.device.core
       )
       let cameras = (0..<dataset.figures().views).map { index in
         Camera(dataset.view_lens(index), rows: Array(dataset.view_world_to_camera(index)))
       }
-      let trainer = try make_trainer(dataset, parameters, configuration.folder.path, work)
+      let trainer = try make_trainer(
+        try openedDevice(work), dataset, parameters, configuration.folder.path, work)
       return SplatTrainer(trainer, cameras: cameras)
     }
   }
@@ -111,6 +113,16 @@ public final class SplatEngine: Engine {
       let opened = try open_device(backend.core, work)
       device = opened
       return opened
+    }
+  }
+}
+
+extension TrainingDevice {
+  fileprivate var core: TrapezeBridge.Backend {
+    switch self {
+    case .automatic: .Automatic
+    case .gpu: .Gpu
+    case .cpu: .Cpu
     }
   }
 }

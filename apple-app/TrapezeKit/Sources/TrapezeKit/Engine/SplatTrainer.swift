@@ -14,6 +14,8 @@ public final class SplatTrainer: TrainEngine {
     self.cameras = cameras
   }
 
+  public var deviceName: String { core.device_name().toString() }
+
   public var step: Int { Int(core.current_step()) }
 
   public func run() -> AsyncThrowingStream<TrainEvent, any Error> {

@@ -18,6 +18,10 @@ public final class TrainingModel {
   public private(set) var phase = Phase.choosing
   public private(set) var datasetName = ""
   public var preset = TrainingPreset.standard
+  /// What the next run may train on.
+  public var device = TrainingDevice.automatic
+  /// What the run trains on.
+  public private(set) var deviceName = ""
   /// Newest last.
   public private(set) var reports: [TrainReport] = []
   /// What happened on the way, in the core's words.
@@ -87,7 +91,8 @@ public final class TrainingModel {
     guard case .ready(let summary) = phase, let access else { return }
     phase = .preparing(ProgressStep(.preparing))
     let folder = runs.appending(path: "\(datasetName)-\(preset.rawValue)")
-    let configuration = preset.configuration(for: summary, folder: folder)
+    var configuration = preset.configuration(for: summary, folder: folder)
+    configuration.device = device
     work = Task {
       do {
         let trainer: any TrainEngine =
@@ -97,6 +102,7 @@ public final class TrainingModel {
         guard self.access === access else { return }
         self.trainer = trainer
         viewCount = trainer.cameras.count
+        deviceName = trainer.deviceName
         await follow(trainer)
       } catch {
         guard self.access === access else { return }
@@ -135,6 +141,7 @@ public final class TrainingModel {
     reports = []
     notes = []
     viewCount = 0
+    deviceName = ""
     phase = .choosing
   }
 

@@ -55,6 +55,62 @@ import Testing
     }
   }
 
+  @Test func aRunOnAGraphicsDeviceSaysSoIsPausedAndGoesOn() async throws {
+    let folder = try TemporaryFolder()
+    var configuration = configuration(folder, steps: 24)
+    configuration.downscale = 4
+    configuration.device = .gpu
+    let engine = SplatEngine(backend: .gpu)
+    let first: any TrainEngine
+    do {
+      first =
+        try await engine
+        .makeTrainer(dataset: Repository.sampleDataset, configuration: configuration).result()
+    } catch let error as EngineError where error.code == .noDevice {
+      print("SKIPPED: training on a graphics device: \(error.message)")
+      return
+    }
+    #expect(!first.deviceName.isEmpty && first.deviceName != "CPU")
+    let camera = try #require(first.cameras.first)
+    let start = try await first.preview(camera)
+    let reader = Task {
+      for try await event in first.run() {
+        if case .report = event { return }
+      }
+    }
+    try await reader.value
+    try await first.checkpoint()
+    #expect(first.step > 0)
+    #expect(try await first.preview(camera) != start)
+
+    let second =
+      try await engine
+      .makeTrainer(dataset: Repository.sampleDataset, configuration: configuration).result()
+    #expect(second.step == first.step && second.deviceName == first.deviceName)
+    var test: TestFigures?
+    for try await event in second.run() {
+      if case .finished(_, let figures) = event { test = figures }
+    }
+    #expect(try #require(test).psnr > 5)
+  }
+
+  @Test func aGraphicsDeviceThatIsNotThereIsNotReplacedBySomethingElse() async throws {
+    let folder = try TemporaryFolder()
+    var configuration = configuration(folder, steps: 10)
+    configuration.device = .gpu
+    do {
+      _ = try await Engines.cpu
+        .makeTrainer(dataset: Repository.sampleDataset, configuration: configuration).result()
+      Issue.record("the CPU was taken for a graphics device")
+    } catch let error as EngineError {
+      #expect(error.code == .noDevice)
+    }
+    configuration.device = .automatic
+    let trainer = try await Engines.cpu
+      .makeTrainer(dataset: Repository.sampleDataset, configuration: configuration).result()
+    #expect(trainer.deviceName == "CPU")
+  }
+
   @Test func aRunThatIsLeftGoesOnInAnotherProcess() async throws {
     let folder = try TemporaryFolder()
     let configuration = configuration(folder, steps: 2_000)

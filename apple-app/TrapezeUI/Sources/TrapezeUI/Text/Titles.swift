@@ -117,6 +117,16 @@ extension TrainingPreset {
   }
 }
 
+extension TrainingDevice {
+  var title: LocalizedStringKey {
+    switch self {
+    case .automatic: "Whatever is faster"
+    case .gpu: "Graphics processor"
+    case .cpu: "Processor"
+    }
+  }
+}
+
 extension KeyframePolicy.Rejection {
   var hint: LocalizedStringKey {
     switch self {

@@ -12,6 +12,7 @@ struct TrainingFigures: View {
       }
       LabeledContent("Quality of the last view") { Text(verbatim: Figures.decibels(report.psnr)) }
       LabeledContent("Splats") { Text(verbatim: Figures.count(report.splatCount)) }
+      LabeledContent("Trains on") { Text(verbatim: training.deviceName) }
       LabeledContent("Steps a second") {
         Text(verbatim: Figures.decimal(report.stepsPerSecond, digits: 1))
       }

@@ -17,7 +17,7 @@ struct TrainingView: View {
       case .choosing, .inspecting: chooser
       case .ready(let dataset):
         summary(dataset)
-        quality($training.preset)
+        quality($training.preset, $training.device)
       case .preparing(let step):
         Section { ProgressRow(step: step) { training.discard() } }
       case .running, .paused, .finished: run
@@ -62,10 +62,15 @@ struct TrainingView: View {
     }
   }
 
-  private func quality(_ preset: Binding<TrainingPreset>) -> some View {
+  private func quality(
+    _ preset: Binding<TrainingPreset>, _ device: Binding<TrainingDevice>
+  ) -> some View {
     Section {
       Picker("Quality", selection: preset) {
         ForEach(TrainingPreset.allCases) { Text($0.title).tag($0) }
+      }
+      Picker("Train on", selection: device) {
+        ForEach(TrainingDevice.allCases) { Text($0.title).tag($0) }
       }
       Button("Start", systemImage: "play.fill") { training.start() }
       Button("Choose another dataset", role: .cancel) { training.discard() }
