@@ -1,6 +1,8 @@
 //! ONNX Runtime: where its library is, and the one environment that a process may have.
 
-use std::path::{Path, PathBuf};
+#[cfg(not(target_os = "ios"))]
+use std::path::Path;
+use std::path::PathBuf;
 use std::sync::Mutex;
 
 use ort::environment::Environment;
