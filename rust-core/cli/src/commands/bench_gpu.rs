@@ -12,10 +12,7 @@ use trapeze_scene::{FrameSettings, ImageError};
 use super::bench::{BenchReport, DeformArguments, Precision, RenderArguments, position_error};
 use super::render::{open_gpu, static_threshold};
 use crate::error::CliError;
-use crate::measure::{Machine, Timing};
-
-/// Time before the first measured frame: a GPU takes that long to raise its clocks.
-const WARM_UP: Duration = Duration::from_secs(1);
+use crate::measure::{GPU_WARM_UP, Machine, Timing};
 
 pub(super) fn render(arguments: &RenderArguments) -> Result<BenchReport, CliError> {
     let scene = Arc::new(arguments.scene.load()?);
@@ -30,7 +27,7 @@ pub(super) fn render(arguments: &RenderArguments) -> Result<BenchReport, CliErro
     let mut renderer = Renderer::with_options(&gpu, scene.clone(), options)?;
     let frame = renderer.render(&camera, &settings)?;
     let start = Instant::now();
-    while start.elapsed() < WARM_UP {
+    while start.elapsed() < GPU_WARM_UP {
         renderer.draw_timed(&camera, &settings)?;
     }
     let mut stages = Vec::new();
@@ -83,7 +80,7 @@ pub(super) fn deform(arguments: &DeformArguments) -> Result<BenchReport, CliErro
     let mut time = 0.0;
     let mut durations = Vec::new();
     let start = Instant::now();
-    while start.elapsed() < WARM_UP {
+    while start.elapsed() < GPU_WARM_UP {
         time += 1.0 / 1024.0;
         renderer.deform_timed(time, threshold)?;
     }

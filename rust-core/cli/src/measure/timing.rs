@@ -34,6 +34,10 @@ impl Timing {
     }
 }
 
+/// Frames are drawn for this long before the first that is timed: a GPU takes that long to raise its
+/// clocks.
+pub(crate) const GPU_WARM_UP: Duration = Duration::from_secs(1);
+
 /// Runs `work` twice to warm up, then `runs` times, and times those.
 pub(crate) fn time_runs<E>(
     runs: usize,

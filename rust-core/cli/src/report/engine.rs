@@ -8,6 +8,7 @@ use trapeze_scene::{Camera, Frame, FrameSettings, Scene};
 
 use super::variant::VariantBackend;
 use crate::error::CliError;
+use crate::measure::GPU_WARM_UP;
 
 pub(super) enum Engine {
     Cpu(Box<trapeze_cpu::Renderer>, Frame),
@@ -48,6 +49,25 @@ impl Engine {
             }
             Self::Gpu(renderer) => Ok(renderer.render(camera, settings)?),
         }
+    }
+
+    /// Draws until the clocks of a GPU are up; the reference before it left it idle. A software device
+    /// has none to raise.
+    pub(super) fn warm_up(
+        &mut self,
+        camera: &Camera,
+        settings: &FrameSettings,
+    ) -> Result<(), CliError> {
+        let start = Instant::now();
+        let Self::Gpu(renderer) = self else { return Ok(()) };
+        if renderer.gpu().is_software() {
+            return Ok(());
+        }
+        while start.elapsed() < GPU_WARM_UP {
+            renderer.forget_deformation();
+            renderer.draw_timed(camera, settings)?;
+        }
+        Ok(())
     }
 
     /// Time of a frame until its image is there: in memory, or on the GPU, by the GPU's own clock

@@ -91,6 +91,7 @@ fn measure_variant(
         truth.extend_from_slice(&exact.color);
     }
     let error = ImageError::between(&pixels, &truth);
+    engine.warm_up(&moments[0].camera, &settings(moments[0].time))?;
     let mut durations = Vec::new();
     for _ in 0..min_frames.div_ceil(moments.len()) {
         for moment in moments {

@@ -17,7 +17,7 @@ use trapeze_train::{ParameterGroup, network_parameters};
 use super::{BenchReport, not_timed};
 use crate::commands::render::{Backend, open_gpu};
 use crate::error::CliError;
-use crate::measure::{Machine, Timing};
+use crate::measure::{GPU_WARM_UP, Machine, Timing};
 use crate::scene_input::{SceneArguments, ViewArguments};
 
 #[derive(Debug, Args)]
@@ -52,9 +52,6 @@ enum Against {
     /// The CPU backend, for large frames.
     Cpu,
 }
-
-/// Time before the first measured run: a GPU takes that long to raise its clocks.
-const WARM_UP: Duration = Duration::from_secs(1);
 
 /// What a backend has found and how long it took.
 struct Measured {
@@ -238,7 +235,7 @@ fn on_gpu(
         Ok(times.map(|times| (deform, times)))
     };
     let start = Instant::now();
-    while start.elapsed() < WARM_UP {
+    while start.elapsed() < GPU_WARM_UP {
         passes()?;
     }
     let mut times = Vec::new();
