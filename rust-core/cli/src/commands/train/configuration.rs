@@ -1,11 +1,14 @@
 //! From arguments to the settings of a run.
 
+use std::path::PathBuf;
+
 use clap::Args;
 use trapeze_formats::dataset::Dataset;
 use trapeze_scene::ShDegree;
 use trapeze_train::config::{Background, TrainingConfig};
 use trapeze_train::{background_for_training, deformation_for_training, splat_ceiling};
 
+use super::settings::overridden;
 use crate::dataset_input::{DatasetArguments, parse_color};
 use crate::error::CliError;
 
@@ -47,6 +50,10 @@ pub(crate) struct TrainingArguments {
     /// Seed of every random choice.
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    /// Any setting of a run as a JSON object, nested as in a run's summary; goes over the other
+    /// arguments.
+    #[arg(long, value_name = "FILE")]
+    settings: Option<PathBuf>,
 }
 
 /// The number of splats that a run may grow to.
@@ -96,7 +103,10 @@ impl TrainingArguments {
         if let Some(count) = self.random_splats {
             config.initial.random_count = count;
         }
-        Ok(config)
+        match &self.settings {
+            Some(path) => overridden(&config, path),
+            None => Ok(config),
+        }
     }
 }
 

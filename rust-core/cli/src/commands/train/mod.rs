@@ -6,6 +6,7 @@ mod interrupt;
 mod metrics;
 mod output;
 mod previews;
+mod settings;
 
 use std::path::PathBuf;
 
