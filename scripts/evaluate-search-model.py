@@ -10,6 +10,8 @@ numbers of views and sizes of crops, on fewer scenes. Needs torch.
 """
 
 import argparse
+import concurrent.futures
+import functools
 import json
 import os
 import pathlib
@@ -89,6 +91,7 @@ def measure(rows: list[dict], threshold: float) -> dict:
 
 def evaluate_scene(arguments, folder: pathlib.Path, seed: int, settings: list[tuple[int, int]], odd):
     """One row for each setting (views, crop size)."""
+    torch.set_num_threads(1)
     rng = random.Random(seed)
     torch.manual_seed(seed)
     looks = random_scene(rng, held_out=True)
@@ -129,17 +132,19 @@ def main() -> None:
     parser.add_argument("--splats", type=int, default=2048, help="per object")
     parser.add_argument("--rows", type=pathlib.Path, help="write every score here")
     parser.add_argument("--seed", type=int, default=100000)
+    parser.add_argument("--jobs", type=int, default=1, help="scenes side by side; times are one's only with 1")
     arguments = parser.parse_args()
-    torch.set_num_threads(1)
     description = json.loads((arguments.models / "model.json").read_text())
     odd = odd_texts(random.Random(9))
     main_setting, others = (4, 256), [(1, 256), (2, 256), (8, 256), (4, 128), (4, 64)]
     rows = {setting: [] for setting in [main_setting, *others]}
-    with tempfile.TemporaryDirectory() as folder:
-        for index in range(arguments.scenes):
-            settings = list(rows) if index < arguments.few else [main_setting]
-            found = evaluate_scene(arguments, pathlib.Path(folder), arguments.seed + index, settings, odd)
-            for setting, row in zip(settings, found):
+    settings_of = lambda index: list(rows) if index < arguments.few else [main_setting]
+    indices = range(arguments.scenes)
+    with tempfile.TemporaryDirectory() as folder, concurrent.futures.ProcessPoolExecutor(arguments.jobs) as jobs:
+        evaluate = functools.partial(evaluate_scene, arguments, pathlib.Path(folder), odd=odd)
+        scenes = jobs.map(evaluate, (arguments.seed + i for i in indices), map(settings_of, indices))
+        for index, found in enumerate(scenes):
+            for setting, row in zip(settings_of(index), found):
                 rows[setting].append(row)
             if (index + 1) % 10 == 0 or index + 1 == arguments.scenes:
                 report = summary(rows, description, arguments.few)
