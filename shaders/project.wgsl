@@ -71,7 +71,7 @@ fn project(
     if (!ellipse.drawn) {
         return;
     }
-    let color = splat_color(local, pose.label, from_camera(pose.position));
+    let color = splat_color(local, pose.label, from_camera(pose.position), ellipse.depth.x);
     centres[splat] = vec4<f32>(ellipse.centre, ellipse.factor.xy);
     extents[splat] =
         vec4<f32>(ellipse.factor.z, pose.log2_opacity, ellipse.depth.x, ellipse.half_height);
@@ -80,12 +80,15 @@ fn project(
     sort_keys_low[splat] = low_key(ellipse.depth);
 }
 
-fn splat_color(local: u32, label: u32, to_splat: vec3<f32>) -> vec3<f32> {
+fn splat_color(local: u32, label: u32, to_splat: vec3<f32>, depth: f32) -> vec3<f32> {
     if (frame.color_source == 1u) {
         return clusters[label].color;
     }
     if (frame.color_source == 2u) {
         return motion_heat(motion[min(local, arrayLength(&motion) - 1u)] * frame.heat_scale);
+    }
+    if (frame.color_source == 3u) {
+        return vec3<f32>(clamp(1.0 - (depth - frame.depth_near) * frame.depth_slope, 0.0, 1.0));
     }
     let degree = min(STORED_SH_DEGREE, frame.sh_degree);
     return limited_color(view_color(local, degree, direction(to_splat)));

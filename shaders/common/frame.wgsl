@@ -22,14 +22,16 @@ struct Frame {
     image: vec2<f32>,
     /// Highest SH degree to evaluate.
     sh_degree: u32,
-    /// 0: spherical harmonics, 1: cluster colours, 2: motion heat.
+    /// 0: spherical harmonics, 1: cluster colours, 2: motion heat,
+    /// 3: depth.
     color_source: u32,
     /// 1 / (motion value that is drawn white).
     heat_scale: f32,
     /// 0, which no compiler knows (see numbers.wgsl).
     zero: u32,
-    padding_1: u32,
-    padding_2: u32,
+    /// Depth that is drawn white, and what a unit of depth takes off that.
+    depth_near: f32,
+    depth_slope: f32,
 }
 
 /// A splat in world space at the time of the frame, activated.

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use trapeze_cpu::reference;
 use trapeze_cpu::{Renderer, RendererOptions};
 use trapeze_scene::{
-    Clusters, ColorSource, Frame, FrameSettings, Motion, NO_SPLAT, Scene, Selection, ShDegree,
-    motion_heat,
+    Clusters, ColorSource, DepthRange, Frame, FrameSettings, Motion, NO_SPLAT, Scene, Selection,
+    ShDegree, motion_heat,
 };
 use trapeze_tests::{
     HeadBiases, Random, Splat, TOLERANCE, assert_agrees, assert_same_color, available_levels,
@@ -212,8 +212,9 @@ fn assert_close(found: [f32; 3], expected: [f32; 3]) {
 }
 
 #[test]
-fn cluster_and_motion_colours_are_those_of_the_table_and_the_heat_map() {
-    for (source, seed) in [(ColorSource::Clusters, 29), (ColorSource::Motion, 30)] {
+fn colours_that_are_not_harmonics_are_those_of_table_heat_map_and_range() {
+    let depths = ColorSource::Depth(DepthRange { near: 3.0, far: 5.0 });
+    for (source, seed) in [(ColorSource::Clusters, 29), (ColorSource::Motion, 30), (depths, 31)] {
         let settings = FrameSettings { color_source: source, time: 0.3, ..everything() };
         let _ = assert_agrees(&clustered(2000, seed), &cloud_camera(90, 70), &settings);
     }

@@ -10,8 +10,8 @@ use trapeze_gpu::{
     Renderer, RendererOptions,
 };
 use trapeze_scene::{
-    Camera, ClusterSet, Clusters, ColorSource, Frame, FrameSettings, Motion, NO_SPLAT, Scene,
-    Selection, ShDegree, psnr,
+    Camera, ClusterSet, Clusters, ColorSource, DepthRange, Frame, FrameSettings, Motion, NO_SPLAT,
+    Scene, Selection, ShDegree, psnr,
 };
 use trapeze_tests::{
     HeadBiases, Random, TOLERANCE, assert_agrees, assert_finite, assert_same_color,
@@ -49,6 +49,9 @@ fn bits(frame: &Frame) -> Vec<u32> {
     color.chain(depths).chain(frame.top_contributor.iter().copied()).collect()
 }
 
+/// Some of the cloud is nearer, some of it farther.
+const CLOUD_DEPTHS: DepthRange = DepthRange { near: 3.0, far: 5.0 };
+
 /// Requests that differ in everything that may change from frame to frame.
 fn requests() -> Vec<FrameSettings> {
     let base = FrameSettings { time: 0.6, ..everything() };
@@ -65,6 +68,7 @@ fn requests() -> Vec<FrameSettings> {
         FrameSettings { selection: Selection::Isolate(set(&[])), ..base.clone() },
         FrameSettings { color_source: ColorSource::Clusters, ..base.clone() },
         FrameSettings { color_source: ColorSource::Motion, ..base.clone() },
+        FrameSettings { color_source: ColorSource::Depth(CLOUD_DEPTHS), ..base.clone() },
         FrameSettings { depth: false, top_contributor: false, ..base },
     ]
 }

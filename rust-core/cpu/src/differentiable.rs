@@ -170,7 +170,7 @@ impl DifferentiableRenderer {
             ColorSource::SphericalHarmonics => {
                 Some(scene.splats.sh_degree.min(settings.max_sh_degree))
             }
-            ColorSource::Clusters | ColorSource::Motion => None,
+            ColorSource::Clusters | ColorSource::Motion | ColorSource::Depth(_) => None,
         };
         let view = BackwardView::new(&relative, degree);
         self.last = Some(LastFrame {

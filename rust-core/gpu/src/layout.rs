@@ -21,8 +21,8 @@ pub(crate) struct Frame {
     pub color_source: u32,
     pub heat_scale: f32,
     pub zero: u32,
-    pub padding_1: u32,
-    pub padding_2: u32,
+    pub depth_near: f32,
+    pub depth_slope: f32,
 }
 
 /// `Pose` of common/frame.wgsl.
@@ -241,8 +241,8 @@ mod tests {
             color_source,
             heat_scale,
             zero,
-            padding_1,
-            padding_2,
+            depth_near,
+            depth_slope,
         );
         assert_same_layout!(shaders::PROJECT, Pose, position, log2_opacity, rotation, scale, label,);
         assert_same_layout!(shaders::PROJECT, Window, first, count, padding_1, padding_2);

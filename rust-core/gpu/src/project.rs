@@ -1,7 +1,7 @@
 //! Stage 2 on the host: the camera in the form that the kernel reads, and the dispatches.
 
 use glam::DVec3;
-use trapeze_scene::{Camera, FrameSettings};
+use trapeze_scene::{Camera, ColorSource, FrameSettings};
 
 use crate::kernel::{part, whole};
 use crate::layout::{Frame, Window};
@@ -21,6 +21,10 @@ pub(crate) fn frame_uniform(camera: &Camera, settings: &FrameSettings, heat_scal
     let focal = [camera.fx, camera.fy];
     let principal = [camera.cx, camera.cy];
     let margin: [f64; 2] = std::array::from_fn(|i| JACOBIAN_MARGIN * size[i] / (2.0 * focal[i]));
+    let (depth_near, depth_slope) = match settings.color_source {
+        ColorSource::Depth(range) => (range.near, range.slope()),
+        _ => (0.0, 0.0),
+    };
     Frame {
         rotation_x: row(0),
         rotation_y: row(1),
@@ -39,8 +43,8 @@ pub(crate) fn frame_uniform(camera: &Camera, settings: &FrameSettings, heat_scal
         color_source: color_source_number(settings.color_source),
         heat_scale,
         zero: 0,
-        padding_1: 0,
-        padding_2: 0,
+        depth_near,
+        depth_slope,
     }
 }
 

@@ -115,5 +115,6 @@ pub(crate) fn color_source_number(source: ColorSource) -> u32 {
         ColorSource::SphericalHarmonics => 0,
         ColorSource::Clusters => 1,
         ColorSource::Motion => 2,
+        ColorSource::Depth(_) => 3,
     }
 }

@@ -37,6 +37,16 @@ impl Bounds {
         self.max.distance(self.min) / 2.0
     }
 
+    /// The eight corners.
+    #[must_use]
+    pub fn corners(&self) -> [DVec3; 8] {
+        std::array::from_fn(|i| {
+            let pick =
+                |axis: usize| if i >> axis & 1 == 1 { self.max[axis] } else { self.min[axis] };
+            DVec3::new(pick(0), pick(1), pick(2))
+        })
+    }
+
     /// Whether the point is inside or on the faces.
     #[must_use]
     pub fn contains(&self, p: DVec3) -> bool {
@@ -136,11 +146,7 @@ mod tests {
             for (azimuth, elevation) in [(0.0, 0.0), (130.0, 45.0), (-70.0, 90.0), (10.0, -90.0)] {
                 let orbit = Orbit { azimuth, elevation, up: DVec3::NEG_Y };
                 let camera = orbit.frame(&bounds, 0.9, size);
-                for corner in 0..8 {
-                    let pick = |bit: u32, axis: usize| {
-                        if corner >> bit & 1 == 1 { bounds.max[axis] } else { bounds.min[axis] }
-                    };
-                    let world = DVec3::new(pick(0, 0), pick(1, 1), pick(2, 2));
+                for world in bounds.corners() {
                     let p = camera.world_to_camera.transform_point3(world);
                     let u = camera.fx * p.x / p.z + camera.cx;
                     let v = camera.fy * p.y / p.z + camera.cy;

@@ -1,9 +1,11 @@
 //! What a renderer is asked for, and what it answers: the contract of every backend.
 
-use crate::{Selection, ShDegree};
+use glam::DVec3;
+
+use crate::{Bounds, Camera, Selection, ShDegree};
 
 /// Where a splat's colour comes from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum ColorSource {
     /// max(0, 0.5 + SH(direction)): the trained colour.
     #[default]
@@ -12,6 +14,46 @@ pub enum ColorSource {
     Clusters,
     /// A heat map of the motion values, black at 0 and white at the scene's 99th percentile.
     Motion,
+    /// A grey by the depth of the splat's centre: see [`depth_grey`].
+    Depth(DepthRange),
+}
+
+/// Depths along the view axis that are told apart, world units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DepthRange {
+    /// What is here or nearer is white.
+    pub near: f32,
+    /// What is here or farther is black.
+    pub far: f32,
+}
+
+impl DepthRange {
+    /// The depths of a box, in front of the camera. Both are in the camera's coordinates, or both
+    /// relative to the scene's origin.
+    #[must_use]
+    pub fn of(bounds: &Bounds, camera: &Camera) -> Self {
+        let depth = |corner: DVec3| camera.world_to_camera.transform_point3(corner).z;
+        let depths = bounds.corners().map(depth);
+        Self {
+            near: depths.iter().copied().fold(f64::INFINITY, f64::min).max(0.0) as f32,
+            far: depths.iter().copied().fold(0.0, f64::max) as f32,
+        }
+    }
+
+    /// What one unit of depth takes off the grey; 0 for a range without an extent.
+    #[must_use]
+    pub fn slope(&self) -> f32 {
+        let extent = self.far - self.near;
+        if extent > 0.0 && extent.is_finite() { 1.0 / extent } else { 0.0 }
+    }
+}
+
+/// 1 at the near end of a range, 0 at its far end, linear in between.
+#[must_use]
+pub fn depth_grey(depth: f32, range: DepthRange) -> f32 {
+    let grey = 1.0 - (depth - range.near) * range.slope();
+    // Also takes what is not a number to 0.
+    grey.max(0.0).min(1.0)
 }
 
 /// One frame's request. Everything may change from frame to frame.
@@ -99,6 +141,32 @@ pub fn motion_heat(relative: f32) -> [f32; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn depths_go_from_white_to_black_over_the_range() {
+        let range = DepthRange { near: 2.0, far: 4.0 };
+        for (depth, grey) in [(1.0, 1.0), (2.0, 1.0), (2.5, 0.75), (4.0, 0.0), (1e30, 0.0)] {
+            assert_eq!(depth_grey(depth, range), grey);
+        }
+        for near in [4.0, 5.0, f32::NAN] {
+            assert!((0.0..=1.0).contains(&depth_grey(3.0, DepthRange { near, far: 4.0 })));
+        }
+    }
+
+    #[test]
+    fn the_depths_of_a_box_are_those_in_front_of_the_camera() {
+        let bounds = Bounds { min: DVec3::splat(-1.0), max: DVec3::new(1.0, 1.0, 3.0) };
+        let camera = |eye: f64| {
+            let eye = DVec3::new(0.0, 0.0, eye);
+            Camera::look_at(eye, eye + DVec3::Z, DVec3::NEG_Y, 0.8, (8, 6))
+        };
+        let range = DepthRange::of(&bounds, &camera(-5.0));
+        assert!((range.near - 4.0).abs() < 1e-6 && (range.far - 8.0).abs() < 1e-6, "{range:?}");
+        let inside = DepthRange::of(&bounds, &camera(1.0));
+        assert!(inside.near == 0.0 && (inside.far - 2.0).abs() < 1e-6, "{inside:?}");
+        let behind = DepthRange::of(&bounds, &camera(9.0));
+        assert_eq!((behind.near, behind.far, behind.slope()), (0.0, 0.0, 0.0));
+    }
 
     #[test]
     fn background_shows_through_what_alpha_leaves() {

@@ -48,7 +48,7 @@ pub use clusters::{Cluster, Clusters};
 pub use comparison::{ImageError, psnr};
 pub use deformation::DeformationNetwork;
 pub use error::{ArchitectureError, SceneError};
-pub use frame::{ColorSource, Frame, FrameSettings, NO_SPLAT, motion_heat};
+pub use frame::{ColorSource, DepthRange, Frame, FrameSettings, NO_SPLAT, depth_grey, motion_heat};
 pub use memory::{GEOMETRY_BYTES_PER_SPLAT, MemoryEstimate};
 pub use motion::{Motion, MotionMeasure, is_dynamic};
 pub use neighbours::{NO_NEIGHBOUR, Neighbours, nearest_neighbour_distances};

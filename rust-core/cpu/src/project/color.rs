@@ -1,7 +1,8 @@
 //! Colours of splats.
 
-use trapeze_scene::{ColorSource, Scene, ShDegree, motion_heat};
-use trapeze_scene::{SH_C0, SH_C1, SH_C2, SH_C3};
+use trapeze_scene::{
+    ColorSource, SH_C0, SH_C1, SH_C2, SH_C3, Scene, ShDegree, depth_grey, motion_heat,
+};
 
 /// Largest value of a colour channel: that of a half float. HDR-bright harmonics stay bright and a
 /// sum over a pixel cannot overflow; infinite coefficients end here, NaN ones at 0.
@@ -21,10 +22,18 @@ pub fn motion_reference(scene: &Scene) -> f32 {
     if value > 0.0 && value.is_finite() { value } else { 1.0 }
 }
 
-/// Colour of splat `i` where it does not depend on the direction: cluster colour or motion heat.
+/// Colour of splat `i`, whose depth is `depth`, where it does not depend on the direction: cluster
+/// colour, motion heat, or depth.
 #[must_use]
-pub fn flat_color(scene: &Scene, source: ColorSource, i: usize, motion_reference: f32) -> [f32; 3] {
+pub fn flat_color(
+    scene: &Scene,
+    source: ColorSource,
+    i: usize,
+    motion_reference: f32,
+    depth: f32,
+) -> [f32; 3] {
     match source {
+        ColorSource::Depth(range) => [depth_grey(depth, range); 3],
         ColorSource::Motion => {
             let value = scene.motion.as_ref().map_or(0.0, |motion| motion.values[i]);
             motion_heat(value / motion_reference)

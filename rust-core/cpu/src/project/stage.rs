@@ -189,7 +189,7 @@ impl Input<'_> {
         }
         splat.depth_low = (depth - f64::from(splat.depth)) as f32;
         splat.index = i as u32;
-        splat.color = self.color(i, offset);
+        splat.color = self.color(i, offset, splat.depth);
         Some(splat)
     }
 
@@ -223,10 +223,10 @@ impl Input<'_> {
     }
 
     #[inline(always)]
-    fn color(&self, i: usize, to_splat: [f32; 3]) -> [f32; 3] {
+    fn color(&self, i: usize, to_splat: [f32; 3], depth: f32) -> [f32; 3] {
         let source = self.settings.color_source;
         if source != ColorSource::SphericalHarmonics {
-            return flat_color(self.scene, source, i, self.stage.motion_reference);
+            return flat_color(self.scene, source, i, self.stage.motion_reference, depth);
         }
         let splats = &self.scene.splats;
         let degree = self.stage.sh_degree.min(self.settings.max_sh_degree);

@@ -47,9 +47,11 @@ pub fn pose_scene(scene: &Scene, camera: &Camera, settings: &FrameSettings) -> V
                     let parameters = SplatParameters::of(&scene.splats, i as usize);
                     parameters.color(position - eye, degree)
                 }
-                source => DVec3::from(
-                    flat_color(scene, source, i as usize, heat_reference).map(f64::from),
-                ),
+                source => {
+                    let depth = camera.world_to_camera.transform_point3(position).z as f32;
+                    let color = flat_color(scene, source, i as usize, heat_reference, depth);
+                    DVec3::from(color.map(f64::from))
+                }
             };
             PosedSplat {
                 index: i,

@@ -47,7 +47,9 @@ pub fn pose_backward(
             let to_splat = DVec3::from(pose(scene, i, settings).position) - eye;
             color_backward(&parameters.sh, to_splat, degree, gradient.color)
         }
-        ColorSource::Clusters | ColorSource::Motion => ([[0.0; 3]; 16], DVec3::ZERO),
+        ColorSource::Clusters | ColorSource::Motion | ColorSource::Depth(_) => {
+            ([[0.0; 3]; 16], DVec3::ZERO)
+        }
     };
     let (rotation, scale) = match &scene.deformation {
         None => (gradient.rotation, gradient.scale),
