@@ -2,7 +2,8 @@
 
 use glam::DMat4;
 use trapeze_scene::{
-    Camera, ClusterSet, ColorSource, Frame, FrameSettings, Rgba8, Scene, Selection, ShDegree,
+    Camera, ClusterSet, ColorSource, DepthRange, Frame, FrameSettings, Rgba8, Scene, Selection,
+    ShDegree,
 };
 
 use crate::failure::Failure;
@@ -45,7 +46,13 @@ pub(crate) fn rows_of(camera: &Camera) -> Vec<f64> {
 }
 
 /// The settings of a frame. Ids of clusters that the scene does not have (any more) select nothing.
-pub(crate) fn settings(scene: &Scene, frame: &FrameParameters, clusters: &[u32]) -> FrameSettings {
+/// `depths` are those of the scene, if it has any.
+pub(crate) fn settings(
+    scene: &Scene,
+    frame: &FrameParameters,
+    clusters: &[u32],
+    depths: Option<DepthRange>,
+) -> FrameSettings {
     let labels = || -> ClusterSet {
         let known = scene.clusters.as_ref();
         clusters.iter().filter_map(|&id| known?.label_of(id)).collect()
@@ -60,11 +67,12 @@ pub(crate) fn settings(scene: &Scene, frame: &FrameParameters, clusters: &[u32])
             Visibility::Hide => Selection::Hide(labels()),
         },
         color_source: match frame.mode {
-            FrameMode::Color | FrameMode::Depth => ColorSource::SphericalHarmonics,
+            FrameMode::Color => ColorSource::SphericalHarmonics,
+            FrameMode::Depth => depths.map_or(ColorSource::default(), ColorSource::Depth),
             FrameMode::Clusters => ColorSource::Clusters,
             FrameMode::Motion => ColorSource::Motion,
         },
-        depth: matches!(frame.mode, FrameMode::Depth),
+        depth: false,
         top_contributor: false,
     }
 }
@@ -74,20 +82,9 @@ pub(crate) fn background(frame: &FrameParameters) -> [f32; 3] {
     [frame.background_red, frame.background_green, frame.background_blue]
 }
 
-/// A frame as it is looked at, opaque; depth is grey over the background.
+/// A frame as it is looked at, opaque.
 pub(crate) fn picture(frame: &Frame, parameters: &FrameParameters) -> Rgba8 {
-    let background = background(parameters);
-    if !matches!(parameters.mode, FrameMode::Depth) {
-        return Rgba8::of_colors(frame, Some(background));
-    }
-    let mut picture = Rgba8::of_depth(&frame.expected_depth, frame.width, frame.height);
-    let behind = background.map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8);
-    for pixel in picture.pixels.as_chunks_mut::<4>().0 {
-        if pixel[3] == 0 {
-            *pixel = [behind[0], behind[1], behind[2], 255];
-        }
-    }
-    picture
+    Rgba8::of_colors(frame, Some(background(parameters)))
 }
 
 #[cfg(test)]
@@ -131,21 +128,24 @@ mod tests {
     fn selections_are_by_id_and_pass_over_ids_that_are_gone() {
         let clusters = Some(Clusters::from_ids(&[40, 7], &[[0.0; 3]; 2]).unwrap());
         let scene = Scene { clusters, ..Scene::from_splats(Splats::default()) };
-        let settings = settings(&scene, &parameters(), &[40, 99]);
+        let settings = settings(&scene, &parameters(), &[40, 99], None);
         assert_eq!(settings.selection, Selection::Isolate([1].into_iter().collect()));
         assert_eq!((settings.time, settings.static_threshold), (0.25, None));
     }
 
     #[test]
-    fn depth_shows_the_background_where_nothing_was_hit() {
-        let frame = Frame {
-            width: 2,
-            height: 1,
-            color: vec![[0.0; 4]; 2],
-            expected_depth: vec![1.0, f32::NAN],
-            ..Frame::default()
-        };
-        let picture = picture(&frame, &FrameParameters { mode: FrameMode::Depth, ..parameters() });
-        assert_eq!(picture.pixels, [255, 255, 255, 255, 255, 128, 0, 255]);
+    fn depth_is_a_colour_over_the_range_of_the_scene() {
+        let scene = Scene::from_splats(Splats::default());
+        let depth = FrameParameters { mode: FrameMode::Depth, ..parameters() };
+        let range = DepthRange { near: 1.0, far: 4.0 };
+        let source = |depths| settings(&scene, &depth, &[], depths).color_source;
+        assert_eq!(source(Some(range)), ColorSource::Depth(range));
+        assert_eq!(source(None), ColorSource::SphericalHarmonics);
+    }
+
+    #[test]
+    fn the_background_is_seen_where_nothing_was_hit() {
+        let frame = Frame { width: 1, height: 1, color: vec![[0.0; 4]], ..Frame::default() };
+        assert_eq!(picture(&frame, &parameters()).pixels, [255, 128, 0, 255]);
     }
 }

@@ -6,15 +6,13 @@ mod screen;
 use std::sync::{Arc, Mutex};
 
 use trapeze_gpu::NetworkPrecision;
-use trapeze_scene::{Camera, FrameSettings, ShDegree, is_dynamic};
+use trapeze_scene::{Bounds, Camera, DepthRange, FrameSettings, ShDegree, is_dynamic};
 
 pub(crate) use backend::{Backend, Cost};
 
 use crate::device::Device;
 use crate::failure::{Code, Contained, Failure, guarded, poisoned};
-use crate::ffi::{
-    DrawFigures, FrameMode, FrameParameters, Lens, PickFigures, RendererParameters, Stage,
-};
+use crate::ffi::{DrawFigures, FrameParameters, Lens, PickFigures, RendererParameters, Stage};
 use crate::frame::{background, camera, picture, settings};
 use crate::image::Image;
 use crate::measure::{Measurements, measure, variants};
@@ -32,6 +30,8 @@ pub(crate) struct Renderer {
 #[derive(Debug)]
 struct State {
     scene: Arc<trapeze_scene::Scene>,
+    /// The depths that are told apart are those of this box.
+    framing: Option<Bounds>,
     options: Options,
     /// `None` until the next frame, when memory was asked back or the device was lost.
     backend: Option<Backend>,
@@ -71,6 +71,7 @@ pub(crate) fn make_renderer(
     guarded(|| {
         let mut state = State {
             scene: scene.shared().clone(),
+            framing: scene.shared().framing_bounds(),
             options: Options::of(&options)?,
             backend: None,
             screen: None,
@@ -273,7 +274,8 @@ impl State {
     ) -> Result<(Camera, FrameSettings), Failure> {
         let camera = camera(&frame.lens, world_to_camera)?;
         let max_sh_degree = self.options.max_sh_degree;
-        let settings = settings(&self.scene, frame, clusters);
+        let depths = self.framing.map(|bounds| DepthRange::of(&bounds, &camera));
+        let settings = settings(&self.scene, frame, clusters, depths);
         Ok((camera, FrameSettings { max_sh_degree, ..settings }))
     }
 
@@ -313,9 +315,8 @@ impl State {
     fn figures(&mut self, frame: &FrameParameters, needs_redraw: bool) -> DrawFigures {
         let total = self.scene.len() as u64;
         let image = [frame.lens.width, frame.lens.height];
-        let layers = matches!(frame.mode, FrameMode::Depth);
         let backend = self.backend.as_ref();
-        let device_bytes = backend.map_or(0, |backend| backend.device_bytes(image, layers));
+        let device_bytes = backend.map_or(0, |backend| backend.device_bytes(image));
         let seconds =
             |part: fn(&Cost) -> Option<f64>| self.cost.as_ref().and_then(part).unwrap_or(f64::NAN);
         DrawFigures {

@@ -148,9 +148,9 @@ impl Backend {
     }
 
     /// Bytes of the buffers on the device for frames of this size, as planned; 0 on the CPU.
-    pub(crate) fn device_bytes(&self, image: [u32; 2], layers: bool) -> u64 {
+    pub(crate) fn device_bytes(&self, image: [u32; 2]) -> u64 {
         match self {
-            Self::Gpu(gpu) => MemoryPlan::new(&gpu.size, &gpu.options, image, layers).total(),
+            Self::Gpu(gpu) => MemoryPlan::new(&gpu.size, &gpu.options, image, false).total(),
             Self::Cpu(_) => 0,
         }
     }
