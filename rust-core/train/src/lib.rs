@@ -43,7 +43,9 @@ mod state;
 pub mod trainer;
 
 pub use cpu_backend::{CpuBackend, CpuBackendOptions, CpuStepTimes};
-pub use defaults::{background_for_training, deformation_for_training, splat_ceiling};
+pub use defaults::{
+    background_for_training, deformation_for_training, prepare_for_motion, splat_ceiling,
+};
 pub use gpu_backend::{GpuBackend, GpuBackendOptions, GpuMemoryPlan, GpuStepTimes};
 pub use motion::{MotionSummary, with_measured_motion};
 pub use network::{TrainedNetwork, network_parameters, set_network_parameters};

@@ -6,7 +6,9 @@ use clap::Args;
 use trapeze_formats::dataset::Dataset;
 use trapeze_scene::ShDegree;
 use trapeze_train::config::{Background, TrainingConfig};
-use trapeze_train::{background_for_training, deformation_for_training, splat_ceiling};
+use trapeze_train::{
+    background_for_training, deformation_for_training, prepare_for_motion, splat_ceiling,
+};
 
 use super::settings::overridden;
 use crate::dataset_input::{DatasetArguments, parse_color};
@@ -91,6 +93,9 @@ impl TrainingArguments {
         };
         if !self.is_static {
             config.deformation = deformation_for_training(dataset, self.steps)?;
+        }
+        if config.deformation.is_some() {
+            prepare_for_motion(&mut config);
         }
         match (self.warm_up, &mut config.deformation) {
             (None, _) => {}

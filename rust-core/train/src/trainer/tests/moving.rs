@@ -122,9 +122,9 @@ fn settings_follow_from_the_times_of_the_photographs() {
     // among them. Their mean interval is (16/17)/14.
     let captured = settings(40_000);
     assert!((captured.time_noise - 0.1 * (16.0 / 17.0) / 14.0).abs() < 1e-7, "{captured:?}");
-    assert_eq!((captured.warm_up, captured.noisy_steps), (3_000, 20_000));
-    assert_eq!((settings(4_000).warm_up, settings(4_000).noisy_steps), (300, 2_000));
-    assert_eq!(settings(400_000).warm_up, 3_000);
+    assert_eq!((captured.warm_up, captured.noisy_steps), (300, 20_000));
+    assert_eq!((settings(4_000).warm_up, settings(4_000).noisy_steps), (60, 2_000));
+    assert_eq!(settings(400_000).warm_up, 300);
     assert_eq!(settings(1).noisy_steps, 1);
     for index in place.dataset.training_views() {
         let path = &place.dataset.views[index].image_path;
