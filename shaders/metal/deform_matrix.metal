@@ -31,8 +31,8 @@ struct Frame {
     uint color_source;
     float heat_scale;
     uint zero;
-    uint padding_1_;
-    uint padding_2_;
+    float depth_near;
+    float depth_slope;
 };
 struct Pose {
     metal::packed_float3 position;

@@ -34,8 +34,8 @@ struct Frame {
     uint color_source;
     float heat_scale;
     uint zero;
-    uint padding_1_;
-    uint padding_2_;
+    float depth_near;
+    float depth_slope;
 };
 struct Pose {
     metal::packed_float3 position;
@@ -595,30 +595,37 @@ metal::float3 splat_color(
     uint local_16,
     uint label,
     metal::float3 to_splat_1,
+    float depth_1,
     constant Frame& frame,
     device type_8 const& harmonics,
     device type_10 const& clusters,
     device type_11 const& motion,
     constant _mslBufferSizes& _buffer_sizes
 ) {
-    uint _e5 = frame.color_source;
-    if (_e5 == 1u) {
-        metal::float3 _e11 = clusters[label].color;
-        return _e11;
+    uint _e6 = frame.color_source;
+    if (_e6 == 1u) {
+        metal::float3 _e12 = clusters[label].color;
+        return _e12;
     }
-    uint _e14 = frame.color_source;
-    if (_e14 == 2u) {
-        float _e24 = motion[metal::min(local_16, (1 + (_buffer_sizes.size5 - 0 - 4) / 4) - 1u)];
-        float _e27 = frame.heat_scale;
-        metal::float3 _e29 = motion_heat(_e24 * _e27);
-        return _e29;
+    uint _e15 = frame.color_source;
+    if (_e15 == 2u) {
+        float _e25 = motion[metal::min(local_16, (1 + (_buffer_sizes.size5 - 0 - 4) / 4) - 1u)];
+        float _e28 = frame.heat_scale;
+        metal::float3 _e30 = motion_heat(_e25 * _e28);
+        return _e30;
     }
-    uint _e33 = frame.sh_degree;
-    uint degree_1 = metal::min(STORED_SH_DEGREE, _e33);
-    metal::float3 _e35 = direction(to_splat_1);
-    metal::float3 _e36 = view_color(local_16, degree_1, _e35, frame, harmonics, _buffer_sizes);
-    metal::float3 _e37 = limited_color(_e36);
-    return _e37;
+    uint _e33 = frame.color_source;
+    if (_e33 == 3u) {
+        float _e38 = frame.depth_near;
+        float _e42 = frame.depth_slope;
+        return metal::float3(metal::clamp(1.0 - ((depth_1 - _e38) * _e42), 0.0, 1.0));
+    }
+    uint _e53 = frame.sh_degree;
+    uint degree_1 = metal::min(STORED_SH_DEGREE, _e53);
+    metal::float3 _e55 = direction(to_splat_1);
+    metal::float3 _e56 = view_color(local_16, degree_1, _e55, frame, harmonics, _buffer_sizes);
+    metal::float3 _e57 = limited_color(_e56);
+    return _e57;
 }
 
 struct projectInput {
@@ -660,12 +667,12 @@ struct projectInput {
         return;
     }
     metal::float3 _e40 = from_camera(pose.position, frame);
-    metal::float3 _e41 = splat_color(local_17, pose.label, _e40, frame, harmonics, clusters, motion, _buffer_sizes);
+    metal::float3 _e43 = splat_color(local_17, pose.label, _e40, _e35.depth.x, frame, harmonics, clusters, motion, _buffer_sizes);
     centres[splat] = metal::float4(_e35.centre, metal::float3(_e35.factor).xy);
     extents[splat] = metal::float4(_e35.factor[2], pose.log2_opacity, _e35.depth.x, _e35.half_height);
-    colors[splat] = metal::float4(_e41, as_type<float>(pose.label));
+    colors[splat] = metal::float4(_e43, as_type<float>(pose.label));
     sort_keys[splat] = as_type<uint>(_e35.depth.x);
-    uint _e70 = low_key(_e35.depth);
-    sort_keys_low[splat] = _e70;
+    uint _e72 = low_key(_e35.depth);
+    sort_keys_low[splat] = _e72;
     return;
 }
