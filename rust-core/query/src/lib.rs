@@ -20,4 +20,4 @@ mod test_scene;
 pub mod tokenizer;
 
 pub use error::SearchError;
-pub use searcher::{Encoded, Searcher};
+pub use searcher::{Encoded, Searcher, expect_words};

@@ -380,8 +380,12 @@ fn clusters_of(scene: &Scene) -> Result<&Clusters, SearchError> {
         .ok_or(SearchError::NoClusters)
 }
 
-/// Some phrases, and something in each of them.
-fn expect_words(phrases: &[&str]) -> Result<(), SearchError> {
+/// Checks that there are phrases, and something in each of them: what can be said before a model is
+/// opened.
+///
+/// # Errors
+/// [`SearchError::EmptyText`].
+pub fn expect_words(phrases: &[&str]) -> Result<(), SearchError> {
     if phrases.is_empty() || phrases.iter().any(|phrase| phrase.trim().is_empty()) {
         return Err(SearchError::EmptyText);
     }

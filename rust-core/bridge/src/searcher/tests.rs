@@ -75,7 +75,7 @@ fn outdated(searcher: &Searcher, cache: Option<&Path>) -> usize {
 #[test]
 fn phrases_find_their_clusters_at_once_and_from_kept_features() {
     let Some(model) = bundled_model() else { return };
-    assert_eq!((model.name().as_str(), model.threshold() as f32), ("trapeze-objects", 0.05));
+    assert_eq!((model.name().as_str(), model.threshold() as f32), ("trapeze-objects", 0.02));
     let scene = sample_scene();
     let renderer = renderer_on(&cpu(), &scene);
     let folder = tempfile::tempdir().unwrap();

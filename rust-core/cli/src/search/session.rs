@@ -12,7 +12,7 @@ use trapeze_query::crops::CropOptions;
 use trapeze_query::features::{FeatureStore, features_path};
 use trapeze_query::models::{Embedder, OnnxModel};
 use trapeze_query::ranking::{Answer, Excluded, Match, MergeLimits, QueryOptions};
-use trapeze_query::{SearchError, Searcher};
+use trapeze_query::{SearchError, Searcher, expect_words};
 use trapeze_scene::Scene;
 
 use super::{CpuCropRenderer, contact_sheet};
@@ -80,6 +80,7 @@ pub(crate) fn search(
         return Err(SearchError::NoClusters.into());
     }
     let phrases: Vec<&str> = arguments.phrases.iter().map(String::as_str).collect();
+    expect_words(&phrases)?;
     let model = OnnxModel::open(arguments.models).map_err(SearchError::from)?;
     let name = model.description().name.clone();
     let mut searcher = Searcher::new(Arc::clone(scene), Box::new(model), arguments.crops.clone())?;
