@@ -44,12 +44,6 @@ impl RowTerms {
         self.rows = exponent.simd_ge(LOG2_ALPHA_MIN).to_bitmask() as u32;
     }
 
-    /// Whether the ellipse meets any row.
-    #[inline(always)]
-    pub(crate) fn meets_strip(&self) -> bool {
-        self.rows != 0
-    }
-
     /// Whether it meets one of the rows of the block that begins with row `first_row`.
     #[inline(always)]
     pub(crate) fn meets_block(&self, first_row: usize) -> bool {
@@ -67,20 +61,18 @@ pub(crate) struct Coverage<S: Simd> {
     pub visible: [mask32x16<S>; ROWS],
 }
 
-/// Evaluates a splat at the columns `x` of the block that begins with row `first_row` of the
-/// strip; `None` where no pixel sees it.
+/// Evaluates a splat in the block that begins with row `first_row` of the strip; `along` is u11 dx
+/// of its columns. `None` where no pixel sees it.
 #[inline(always)]
 pub(crate) fn cover<S: Simd>(
     simd: S,
-    splat: &ProjectedSplat,
     terms: &RowTerms,
-    x: f32x16<S>,
+    along: f32x16<S>,
     first_row: usize,
 ) -> Option<Coverage<S>> {
     let zero = f32x16::splat(simd, 0.0);
     let shear = block_rows(&terms.shear, first_row);
     let row_exponent = block_rows(&terms.exponent, first_row);
-    let along = (x - splat.x) * splat.u11;
     let mut v1 = [zero; ROWS];
     let mut exponent = [zero; ROWS];
     let mut visible = [mask32x16::splat(simd, false); ROWS];

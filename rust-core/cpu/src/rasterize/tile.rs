@@ -44,11 +44,16 @@ struct Block<S: Simd> {
     top: [u32x16<S>; ROWS],
 }
 
-/// A splat as one strip sees it.
+/// A splat as one strip sees it: what blending needs of it, in three cache lines.
 #[derive(Clone, Copy, Default)]
+#[repr(C, align(64))]
 pub(super) struct StripSplat {
-    splat: ProjectedSplat,
     terms: RowTerms,
+    x: f32,
+    u11: f32,
+    color: [f32; 3],
+    depth: f32,
+    index: u32,
 }
 
 /// Blends the splats that touch a tile, in the order given, and writes the tile into its band.
@@ -85,7 +90,10 @@ pub(super) fn blend_tile<S: Simd, const DEPTH: bool, const TOP: bool>(
     }
 }
 
-/// Collects the splats that meet a strip with row centres `y`, with what depends on the row alone.
+/// The splats of a tile for a strip with row centres `y`, with what depends on the row alone.
+///
+/// All of them: the few that miss the strip are passed over by every block. Leaving them out here
+/// would make the place of each entry wait for the one before it.
 #[inline(always)]
 fn fill_strip<'a, S: Simd>(
     splats: &[ProjectedSplat],
@@ -96,15 +104,16 @@ fn fill_strip<'a, S: Simd>(
     if strip.len() < ranks.len() {
         strip.resize(ranks.len(), StripSplat::default());
     }
-    let mut used = 0;
-    for &rank in ranks {
-        // Written in place, and kept by moving on: entries are too large to be copied about.
-        let entry = &mut strip[used];
-        entry.splat = splats[rank as usize];
-        entry.terms.fill(&entry.splat, y - entry.splat.y);
-        used += usize::from(entry.terms.meets_strip());
+    for (entry, &rank) in strip.iter_mut().zip(ranks) {
+        let splat = &splats[rank as usize];
+        entry.x = splat.x;
+        entry.u11 = splat.u11;
+        entry.color = splat.color;
+        entry.depth = splat.depth;
+        entry.index = splat.index;
+        entry.terms.fill(splat, y - splat.y);
     }
-    &strip[..used]
+    &strip[..ranks.len()]
 }
 
 /// Blends one block: `x` are its columns, `first_row` its first row in the strip.
@@ -142,13 +151,13 @@ fn blend_block<S: Simd, const DEPTH: bool, const TOP: bool>(
 #[inline(always)]
 fn blend<S: Simd, const DEPTH: bool, const TOP: bool>(
     simd: S,
-    strip: &StripSplat,
+    splat: &StripSplat,
     x: f32x16<S>,
     first_row: usize,
     block: &mut Block<S>,
 ) {
-    let splat = &strip.splat;
-    let Some(coverage) = cover(simd, splat, &strip.terms, x, first_row) else { return };
+    let along = (x - splat.x) * splat.u11;
+    let Some(coverage) = cover(simd, &splat.terms, along, first_row) else { return };
     for r in 0..ROWS {
         let before = block.transmittance[r];
         let step = step(simd, &coverage, r, before);

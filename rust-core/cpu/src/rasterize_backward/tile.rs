@@ -81,7 +81,7 @@ pub(super) fn backward_tile<S: Simd, const DEPTH: bool>(
     }
 }
 
-/// Collects the splats that meet a strip with row centres `y`, with what depends on the row alone.
+/// The splats of a tile for a strip with row centres `y`, with what depends on the row alone.
 #[inline(always)]
 fn fill_strip<'a, S: Simd>(
     splats: &[ProjectedSplat],
@@ -93,17 +93,14 @@ fn fill_strip<'a, S: Simd>(
     if strip.len() < positions.len() {
         strip.resize(positions.len(), StripSplat::default());
     }
-    let mut used = 0;
-    for &position in positions {
-        let entry = &mut strip[used];
+    for (entry, &position) in strip.iter_mut().zip(positions) {
         entry.splat = splats[entries[position as usize].rank as usize];
         entry.position = position;
         let dy = y - entry.splat.y;
         dy.store_array(&mut entry.dy);
         entry.terms.fill(&entry.splat, dy);
-        used += usize::from(entry.terms.meets_strip());
     }
-    &strip[..used]
+    &strip[..positions.len()]
 }
 
 /// Reads a block of the frame and of the gradient; pixels outside have T = 0 and so no part.
@@ -209,7 +206,8 @@ fn backward_splat<S: Simd, const DEPTH: bool>(
 ) {
     let splat = &strip.splat;
     let zero = f32x16::splat(simd, 0.0);
-    let Some(coverage) = cover(simd, splat, &strip.terms, x, first_row) else { return };
+    let along = (x - splat.x) * splat.u11;
+    let Some(coverage) = cover(simd, &strip.terms, along, first_row) else { return };
     let (v1, dy) = (&coverage.v1, block_rows(&strip.dy, first_row));
     let mut total = [zero; 10];
     for r in 0..ROWS {
