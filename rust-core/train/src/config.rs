@@ -86,6 +86,9 @@ pub struct DeformationTraining {
     pub time_noise: f64,
     /// Steps of the network after which that noise has faded, linearly.
     pub noisy_steps: u32,
+    /// Steps in which nothing but the difference to the photographs acts on the splats: no pressure
+    /// on opacities and scales, no noise, no SSIM.
+    pub undisturbed: u32,
 }
 
 impl Default for DeformationTraining {
@@ -98,6 +101,7 @@ impl Default for DeformationTraining {
             rate_end: 1.6e-6,
             time_noise: 0.0,
             noisy_steps: 20_000,
+            undisturbed: 3_000,
         }
     }
 }

@@ -70,16 +70,21 @@ impl TrainingConfig {
     /// (1, until a run has diverged).
     #[must_use]
     pub fn step_plan(&self, step: u32, extent: f64, rate_factor: f64) -> StepPlan {
+        let undisturbed = self.deformation.is_some_and(|motion| step < motion.undisturbed);
+        let pressing = |value: f64| if undisturbed { 0.0 } else { value };
         StepPlan {
             step,
             seed: self.seed,
             sh_degree: self.sh_degree_at(step),
             background: self.background_at(step),
-            ssim_weight: self.ssim_weight as f32,
+            ssim_weight: pressing(self.ssim_weight) as f32,
             rates: self.rates.at(step, self.steps, extent).scaled(rate_factor),
             adam: self.adam.at_step(step.saturating_add(1)),
-            regularisers: self.regularisers,
-            noise: self.densification.map(|densification| densification.noise),
+            regularisers: Regularisers {
+                opacity: pressing(self.regularisers.opacity),
+                scale: pressing(self.regularisers.scale),
+            },
+            noise: self.densification.filter(|_| !undisturbed).map(|set| set.noise),
             network: self.network_step(step, rate_factor),
         }
     }
@@ -191,6 +196,24 @@ mod tests {
         let slower = config.step_plan(600, 1.0, 0.5).network.unwrap();
         assert_eq!(slower.rate, 0.5 * at(600).rate);
         assert_eq!(TrainingConfig::fixed(10).step_plan(5, 1.0, 1.0).network, None);
+    }
+
+    #[test]
+    fn at_first_nothing_but_the_photographs_acts_on_what_moves() {
+        let deformation =
+            DeformationTraining { undisturbed: 100, ..DeformationTraining::default() };
+        let moving =
+            TrainingConfig { deformation: Some(deformation), ..TrainingConfig::growing(1_000, 10) };
+        let early = moving.step_plan(99, 1.0, 1.0);
+        assert_eq!((early.ssim_weight, early.noise), (0.0, None));
+        assert_eq!(early.regularisers, Regularisers { opacity: 0.0, scale: 0.0 });
+        let usual = TrainingConfig::growing(1_000, 10);
+        for (config, step) in [(&moving, 100), (&usual, 99)] {
+            let plan = config.step_plan(step, 1.0, 1.0);
+            assert_eq!(plan.ssim_weight, usual.ssim_weight as f32);
+            assert_eq!(plan.noise, usual.densification.map(|set| set.noise));
+            assert_eq!(plan.regularisers, usual.regularisers);
+        }
     }
 
     #[test]

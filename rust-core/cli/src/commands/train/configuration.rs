@@ -43,7 +43,7 @@ pub(crate) struct TrainingArguments {
     #[arg(long = "static")]
     is_static: bool,
     /// Steps that a scene that moves is trained as if it did not, before its deformation network
-    /// takes part; by default 3 of 40.
+    /// takes part; by default one in 20, at most 300.
     #[arg(long, value_name = "N", conflicts_with = "is_static")]
     warm_up: Option<u32>,
     /// Random splats to start from where a dataset has no points.

@@ -123,7 +123,8 @@ fn settings_follow_from_the_times_of_the_photographs() {
     let captured = settings(40_000);
     assert!((captured.time_noise - 0.1 * (16.0 / 17.0) / 14.0).abs() < 1e-7, "{captured:?}");
     assert_eq!((captured.warm_up, captured.noisy_steps), (300, 20_000));
-    assert_eq!((settings(4_000).warm_up, settings(4_000).noisy_steps), (60, 2_000));
+    assert_eq!((settings(4_000).warm_up, settings(4_000).noisy_steps), (200, 2_000));
+    assert_eq!((captured.undisturbed, settings(4_000).undisturbed), (3_000, 600));
     assert_eq!(settings(400_000).warm_up, 300);
     assert_eq!(settings(1).noisy_steps, 1);
     for index in place.dataset.training_views() {
