@@ -12,7 +12,7 @@ use trapeze_scene::{FrameSettings, ImageError};
 use super::bench::{BenchReport, DeformArguments, Precision, RenderArguments, position_error};
 use super::render::{open_gpu, static_threshold};
 use crate::error::CliError;
-use crate::measure::{GPU_WARM_UP, Machine, Timing};
+use crate::measure::{Machine, Timing, warm_up_gpu};
 
 pub(super) fn render(arguments: &RenderArguments) -> Result<BenchReport, CliError> {
     let scene = Arc::new(arguments.scene.load()?);
@@ -26,10 +26,7 @@ pub(super) fn render(arguments: &RenderArguments) -> Result<BenchReport, CliErro
     let options = RendererOptions { harmonics, ..RendererOptions::default() };
     let mut renderer = Renderer::with_options(&gpu, scene.clone(), options)?;
     let frame = renderer.render(&camera, &settings)?;
-    let start = Instant::now();
-    while start.elapsed() < GPU_WARM_UP {
-        renderer.draw_timed(&camera, &settings)?;
-    }
+    warm_up_gpu(|| renderer.draw_timed(&camera, &settings))?;
     let mut stages = Vec::new();
     for _ in 0..arguments.runs.max(1) {
         renderer.forget_deformation();
@@ -79,11 +76,10 @@ pub(super) fn deform(arguments: &DeformArguments) -> Result<BenchReport, CliErro
     let mut renderer = Renderer::with_options(&gpu, scene.clone(), options)?;
     let mut time = 0.0;
     let mut durations = Vec::new();
-    let start = Instant::now();
-    while start.elapsed() < GPU_WARM_UP {
+    warm_up_gpu(|| {
         time += 1.0 / 1024.0;
-        renderer.deform_timed(time, threshold)?;
-    }
+        renderer.deform_timed(time, threshold)
+    })?;
     for _ in 0..arguments.runs.max(1) {
         time += 1.0 / 1024.0;
         durations.extend(renderer.deform_timed(time, threshold)?);

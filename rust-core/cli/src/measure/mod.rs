@@ -4,4 +4,4 @@ mod machine;
 mod timing;
 
 pub(crate) use machine::{Machine, level_name, simd_levels};
-pub(crate) use timing::{GPU_WARM_UP, Timing, time_runs};
+pub(crate) use timing::{Timing, time_runs, warm_up_gpu};

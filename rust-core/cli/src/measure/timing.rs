@@ -34,9 +34,17 @@ impl Timing {
     }
 }
 
-/// Frames are drawn for this long before the first that is timed: a GPU takes that long to raise its
-/// clocks.
-pub(crate) const GPU_WARM_UP: Duration = Duration::from_secs(1);
+/// A GPU takes this long to raise its clocks.
+const GPU_WARM_UP: Duration = Duration::from_secs(1);
+
+/// Repeats `work` until the clocks of an idle GPU are up: what is timed comes after it.
+pub(crate) fn warm_up_gpu<T, E>(mut work: impl FnMut() -> Result<T, E>) -> Result<(), E> {
+    let start = Instant::now();
+    while start.elapsed() < GPU_WARM_UP {
+        work()?;
+    }
+    Ok(())
+}
 
 /// Runs `work` twice to warm up, then `runs` times, and times those.
 pub(crate) fn time_runs<E>(

@@ -8,7 +8,7 @@ use trapeze_scene::{Camera, Frame, FrameSettings, Scene};
 
 use super::variant::VariantBackend;
 use crate::error::CliError;
-use crate::measure::GPU_WARM_UP;
+use crate::measure::warm_up_gpu;
 
 pub(super) enum Engine {
     Cpu(Box<trapeze_cpu::Renderer>, Frame),
@@ -58,16 +58,14 @@ impl Engine {
         camera: &Camera,
         settings: &FrameSettings,
     ) -> Result<(), CliError> {
-        let start = Instant::now();
         let Self::Gpu(renderer) = self else { return Ok(()) };
         if renderer.gpu().is_software() {
             return Ok(());
         }
-        while start.elapsed() < GPU_WARM_UP {
+        Ok(warm_up_gpu(|| {
             renderer.forget_deformation();
-            renderer.draw_timed(camera, settings)?;
-        }
-        Ok(())
+            renderer.draw_timed(camera, settings)
+        })?)
     }
 
     /// Time of a frame until its image is there: in memory, or on the GPU, by the GPU's own clock

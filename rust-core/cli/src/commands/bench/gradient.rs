@@ -17,7 +17,7 @@ use trapeze_train::{ParameterGroup, network_parameters};
 use super::{BenchReport, not_timed};
 use crate::commands::render::{Backend, open_gpu};
 use crate::error::CliError;
-use crate::measure::{GPU_WARM_UP, Machine, Timing};
+use crate::measure::{Machine, Timing, warm_up_gpu};
 use crate::scene_input::{SceneArguments, ViewArguments};
 
 #[derive(Debug, Args)]
@@ -234,10 +234,7 @@ fn on_gpu(
         }
         Ok(times.map(|times| (deform, times)))
     };
-    let start = Instant::now();
-    while start.elapsed() < GPU_WARM_UP {
-        passes()?;
-    }
+    warm_up_gpu(&mut passes)?;
     let mut times = Vec::new();
     for _ in 0..runs {
         times.extend(passes()?);
