@@ -1,6 +1,6 @@
 // A hidden layer of the deformation network under training: y = ReLU(W x + b) for a chunk of splats.
 //
-// Needs: common/network, common/matrix_tile.
+// Needs: common/network, common/matrix_tile, common/activation_block, common/weight_block.
 //
 // A tile is 128 outputs × 128 splats; groups.x counts through the outputs, groups.y through the
 // splats.
@@ -19,14 +19,7 @@ fn load_left(input: u32, row: u32) -> Block {
     if (input >= layer.inputs || output >= layer.outputs) {
         return Block();
     }
-    let stride = layer.inputs / 4u;
-    let at = layer.weights + output * stride + input / 4u;
-    return transposed(
-        parameters[at],
-        parameters[at + stride],
-        parameters[at + 2u * stride],
-        parameters[at + 3u * stride],
-    );
+    return transposed(weight_block(output, input));
 }
 
 /// Columns of the input's rows.
@@ -34,14 +27,7 @@ fn load_right(input: u32, column: u32) -> Block {
     if (input >= layer.inputs) {
         return Block();
     }
-    let stride = layer.row_vectors;
-    let at = (layer.input_row + input) * stride + (first_column + column) / 4u;
-    return Block(
-        activations[at],
-        activations[at + stride],
-        activations[at + 2u * stride],
-        activations[at + 3u * stride],
-    );
+    return activation_block(layer.input_row + input, first_column + column);
 }
 
 fn store_row(row: u32, column: u32, value: vec4<f32>) {

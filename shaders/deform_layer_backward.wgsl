@@ -1,7 +1,7 @@
 // The mirror of deform_layer.wgsl by its input: ∂L/∂x = Wᵀ ∂L/∂y for a chunk of splats, through the
 // ReLU that x came out of, and into the place of x.
 //
-// Needs: common/network, common/matrix_tile.
+// Needs: common/network, common/matrix_tile, common/activation_block, common/weight_block.
 //
 // A tile is 128 hidden inputs × 128 splats. γ, in front of them in one layer, gets no gradient. Only
 // the thread that overwrites an element of x reads it.
@@ -20,14 +20,7 @@ fn load_left(output: u32, row: u32) -> Block {
     if (output >= layer.outputs || input >= layer.inputs) {
         return Block();
     }
-    let stride = layer.inputs / 4u;
-    let at = layer.weights + output * stride + input / 4u;
-    return Block(
-        parameters[at],
-        parameters[at + stride],
-        parameters[at + 2u * stride],
-        parameters[at + 3u * stride],
-    );
+    return weight_block(output, input);
 }
 
 /// Columns of the rows of ∂L/∂y.
@@ -35,14 +28,7 @@ fn load_right(output: u32, column: u32) -> Block {
     if (output >= layer.outputs) {
         return Block();
     }
-    let stride = layer.row_vectors;
-    let at = (layer.output_row + output) * stride + (first_column + column) / 4u;
-    return Block(
-        activations[at],
-        activations[at + stride],
-        activations[at + 2u * stride],
-        activations[at + 3u * stride],
-    );
+    return activation_block(layer.output_row + output, first_column + column);
 }
 
 fn store_row(row: u32, column: u32, value: vec4<f32>) {

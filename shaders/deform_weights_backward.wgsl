@@ -1,7 +1,7 @@
 // The mirror of deform_layer.wgsl by its parameters: ∂L/∂W = Σ ∂L/∂y ⊗ x and ∂L/∂b = Σ ∂L/∂y over
 // the splats of a chunk, in parts that deform_weights_sum.wgsl adds up in a fixed order.
 //
-// Needs: common/network, common/matrix_tile.
+// Needs: common/network, common/matrix_tile, common/activation_block.
 //
 // A tile is 128 outputs × 128 inputs; groups.x counts through the tiles, groups.y through the parts
 // of the sum: a layer has at most a handful of tiles, far fewer than a GPU has cores.
@@ -24,7 +24,7 @@ fn load_left(column: u32, row: u32) -> Block {
     if (output >= layer.outputs) {
         return Block();
     }
-    return four_rows(layer.output_row + output, column);
+    return transposed(activation_block(layer.output_row + output, column));
 }
 
 /// Inputs: rows of x.
@@ -33,18 +33,7 @@ fn load_right(column: u32, row: u32) -> Block {
     if (input >= layer.inputs) {
         return Block();
     }
-    return four_rows(layer.input_row + input, column);
-}
-
-fn four_rows(row: u32, column: u32) -> Block {
-    let stride = layer.row_vectors;
-    let at = row * stride + column / 4u;
-    return transposed(
-        activations[at],
-        activations[at + stride],
-        activations[at + 2u * stride],
-        activations[at + 3u * stride],
-    );
+    return transposed(activation_block(layer.input_row + input, column));
 }
 
 fn store_row(row: u32, column: u32, value: vec4<f32>) {

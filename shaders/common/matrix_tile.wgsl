@@ -52,9 +52,9 @@ struct Tile {
     loaded: vec4<f32>,
 }
 
-/// A block from four vectors along the sum, one per row of the tile.
-fn transposed(r0: vec4<f32>, r1: vec4<f32>, r2: vec4<f32>, r3: vec4<f32>) -> Block {
-    let columns = transpose(mat4x4<f32>(r0, r1, r2, r3));
+/// The block of four vectors that were read along the sum, one per row of the tile.
+fn transposed(rows: Block) -> Block {
+    let columns = transpose(mat4x4<f32>(rows.k0, rows.k1, rows.k2, rows.k3));
     return Block(columns[0], columns[1], columns[2], columns[3]);
 }
 

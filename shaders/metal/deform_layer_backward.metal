@@ -8,7 +8,7 @@ using metal::uint;
 
 struct _mslBufferSizes {
     uint size4;
-    uint size6;
+    uint size5;
 };
 
 struct type_2 {
@@ -80,12 +80,9 @@ uint sum_parts(
 }
 
 Block transposed(
-    metal::float4 r0_,
-    metal::float4 r1_,
-    metal::float4 r2_,
-    metal::float4 r3_
+    Block rows
 ) {
-    metal::float4x4 columns = metal::transpose(metal::float4x4(r0_, r1_, r2_, r3_));
+    metal::float4x4 columns = metal::transpose(metal::float4x4(rows.k0_, rows.k1_, rows.k2_, rows.k3_));
     return Block {columns[0], columns[1], columns[2], columns[3]};
 }
 
@@ -100,8 +97,26 @@ metal::uint2 loaded_block(
     return metal::uint2(naga_mod(naga_div(t, 2u), 16u) + (16u * naga_div(t, 64u)), naga_mod(t, 2u) + (2u * naga_mod(naga_div(t, 32u), 2u)));
 }
 
-Block load_left(
+Block weight_block(
     uint output,
+    uint input,
+    constant NetworkLayer& layer,
+    device type_6 const& parameters,
+    constant _mslBufferSizes& _buffer_sizes
+) {
+    uint _e4 = layer.inputs;
+    uint stride = naga_div(_e4, 4u);
+    uint _e9 = layer.weights;
+    uint at = (_e9 + (output * stride)) + naga_div(input, 4u);
+    metal::float4 _e17 = parameters[at];
+    metal::float4 _e21 = parameters[at + stride];
+    metal::float4 _e27 = parameters[at + (2u * stride)];
+    metal::float4 _e33 = parameters[at + (3u * stride)];
+    return Block {_e17, _e21, _e27, _e33};
+}
+
+Block load_left(
+    uint output_1,
     uint row,
     thread uint& first_input,
     constant NetworkLayer& layer,
@@ -110,11 +125,11 @@ Block load_left(
 ) {
     bool local = {};
     uint _e3 = first_input;
-    uint input = _e3 + row;
+    uint input_1 = _e3 + row;
     uint _e7 = layer.outputs;
-    if (!((output >= _e7))) {
+    if (!((output_1 >= _e7))) {
         uint _e14 = layer.inputs;
-        local = input >= _e14;
+        local = input_1 >= _e14;
     } else {
         local = true;
     }
@@ -122,38 +137,42 @@ Block load_left(
     if (_e17) {
         return Block {};
     }
-    uint _e21 = layer.inputs;
-    uint stride = naga_div(_e21, 4u);
-    uint _e26 = layer.weights;
-    uint at = (_e26 + (output * stride)) + naga_div(input, 4u);
-    metal::float4 _e34 = parameters[at];
-    metal::float4 _e38 = parameters[at + stride];
-    metal::float4 _e44 = parameters[at + (2u * stride)];
-    metal::float4 _e50 = parameters[at + (3u * stride)];
-    return Block {_e34, _e38, _e44, _e50};
+    Block _e19 = weight_block(output_1, input_1, layer, parameters, _buffer_sizes);
+    return _e19;
 }
 
-Block load_right(
-    uint output_1,
+Block activation_block(
+    uint row_1,
     uint column,
     constant NetworkLayer& layer,
-    thread uint& first_column,
     device type_6 const& activations,
     constant _mslBufferSizes& _buffer_sizes
 ) {
+    uint stride_1 = layer.row_vectors;
+    uint at_1 = (row_1 * stride_1) + naga_div(column, 4u);
+    metal::float4 _e11 = activations[at_1];
+    metal::float4 _e15 = activations[at_1 + stride_1];
+    metal::float4 _e21 = activations[at_1 + (2u * stride_1)];
+    metal::float4 _e27 = activations[at_1 + (3u * stride_1)];
+    return Block {_e11, _e15, _e21, _e27};
+}
+
+Block load_right(
+    uint output_2,
+    uint column_1,
+    constant NetworkLayer& layer,
+    device type_6 const& activations,
+    thread uint& first_column,
+    constant _mslBufferSizes& _buffer_sizes
+) {
     uint _e4 = layer.outputs;
-    if (output_1 >= _e4) {
+    if (output_2 >= _e4) {
         return Block {};
     }
-    uint stride_1 = layer.row_vectors;
-    uint _e12 = layer.output_row;
-    uint _e16 = first_column;
-    uint at_1 = ((_e12 + output_1) * stride_1) + naga_div(_e16 + column, 4u);
-    metal::float4 _e23 = activations[at_1];
-    metal::float4 _e27 = activations[at_1 + stride_1];
-    metal::float4 _e33 = activations[at_1 + (2u * stride_1)];
-    metal::float4 _e39 = activations[at_1 + (3u * stride_1)];
-    return Block {_e23, _e27, _e33, _e39};
+    uint _e9 = layer.output_row;
+    uint _e12 = first_column;
+    Block _e14 = activation_block(_e9 + output_2, _e12 + column_1, layer, activations, _buffer_sizes);
+    return _e14;
 }
 
 Block load_step(
@@ -162,8 +181,8 @@ Block load_step(
     thread uint& first_input,
     constant NetworkLayer& layer,
     device type_6 const& parameters,
-    thread uint& first_column,
     device type_6 const& activations,
+    thread uint& first_column,
     constant _mslBufferSizes& _buffer_sizes
 ) {
     metal::uint2 _e2 = loaded_block(thread_2);
@@ -172,7 +191,7 @@ Block load_step(
         Block _e14 = load_left(contraction, 4u * _e2.x, first_input, layer, parameters, _buffer_sizes);
         return _e14;
     }
-    Block _e18 = load_right(contraction, 4u * _e2.x, layer, first_column, activations, _buffer_sizes);
+    Block _e18 = load_right(contraction, 4u * _e2.x, layer, activations, first_column, _buffer_sizes);
     return _e18;
 }
 
@@ -279,15 +298,15 @@ Tile product(
     thread uint& first_input,
     constant NetworkLayer& layer,
     device type_6 const& parameters,
-    thread uint& first_column,
     device type_6 const& activations,
+    thread uint& first_column,
     constant _mslBufferSizes& _buffer_sizes
 ) {
     Tile tile_1 = Tile {};
     Block next = {};
     uint step_1 = {};
     metal::uint2 _e3 = tile_place(thread_5);
-    Block _e6 = load_step(first, thread_5, first_input, layer, parameters, first_column, activations, _buffer_sizes);
+    Block _e6 = load_step(first, thread_5, first_input, layer, parameters, activations, first_column, _buffer_sizes);
     next = _e6;
     step_1 = first;
     bool loop_init_1 = true;
@@ -316,7 +335,7 @@ Tile product(
             uint _e26 = step_1;
             if ((_e26 + 1u) < end) {
                 uint _e30 = step_1;
-                Block _e33 = load_step(_e30 + 1u, thread_5, first_input, layer, parameters, first_column, activations, _buffer_sizes);
+                Block _e33 = load_step(_e30 + 1u, thread_5, first_input, layer, parameters, activations, first_column, _buffer_sizes);
                 next = _e33;
             }
             multiply_add(tile_1, _e3, left, right);
@@ -327,43 +346,43 @@ Tile product(
 }
 
 void store_row(
-    uint row_1,
-    uint column_1,
+    uint row_2,
+    uint column_2,
     metal::float4 value,
     thread uint& first_input,
     constant NetworkLayer& layer,
-    thread uint& first_column,
     device type_6& activations,
+    thread uint& first_column,
     constant _mslBufferSizes& _buffer_sizes
 ) {
     uint _e4 = first_input;
-    uint input_1 = _e4 + row_1;
+    uint input_2 = _e4 + row_2;
     uint _e8 = layer.inputs;
-    if (input_1 >= _e8) {
+    if (input_2 >= _e8) {
         return;
     }
     uint _e12 = layer.input_row;
     uint _e16 = layer.row_vectors;
     uint _e19 = first_column;
-    uint at_3 = ((_e12 + input_1) * _e16) + naga_div(_e19 + column_1, 4u);
+    uint at_3 = ((_e12 + input_2) * _e16) + naga_div(_e19 + column_2, 4u);
     metal::float4 _e30 = activations[at_3];
     activations[at_3] = metal::select(metal::float4(0.0), value, _e30 > metal::float4(0.0));
     return;
 }
 
 void store_pair(
-    uint row_2,
+    uint row_3,
     uint column_vector,
     metal::float4 first_1,
     metal::float4 second,
     thread uint& first_input,
     constant NetworkLayer& layer,
-    thread uint& first_column,
     device type_6& activations,
+    thread uint& first_column,
     constant _mslBufferSizes& _buffer_sizes
 ) {
-    store_row(row_2, 4u * column_vector, first_1, first_input, layer, first_column, activations, _buffer_sizes);
-    store_row(row_2, (4u * column_vector) + 64u, second, first_input, layer, first_column, activations, _buffer_sizes);
+    store_row(row_3, 4u * column_vector, first_1, first_input, layer, activations, first_column, _buffer_sizes);
+    store_row(row_3, (4u * column_vector) + 64u, second, first_input, layer, activations, first_column, _buffer_sizes);
     return;
 }
 
@@ -372,19 +391,19 @@ void store_tile(
     uint thread_6,
     thread uint& first_input,
     constant NetworkLayer& layer,
-    thread uint& first_column,
     device type_6& activations,
+    thread uint& first_column,
     constant _mslBufferSizes& _buffer_sizes
 ) {
     metal::uint2 _e2 = tile_place(thread_6);
-    store_pair(4u * _e2.x, _e2.y, tile_2.a0_, tile_2.b0_, first_input, layer, first_column, activations, _buffer_sizes);
-    store_pair((4u * _e2.x) + 1u, _e2.y, tile_2.a1_, tile_2.b1_, first_input, layer, first_column, activations, _buffer_sizes);
-    store_pair((4u * _e2.x) + 2u, _e2.y, tile_2.a2_, tile_2.b2_, first_input, layer, first_column, activations, _buffer_sizes);
-    store_pair((4u * _e2.x) + 3u, _e2.y, tile_2.a3_, tile_2.b3_, first_input, layer, first_column, activations, _buffer_sizes);
-    store_pair((4u * _e2.x) + 64u, _e2.y, tile_2.a4_, tile_2.b4_, first_input, layer, first_column, activations, _buffer_sizes);
-    store_pair((4u * _e2.x) + 65u, _e2.y, tile_2.a5_, tile_2.b5_, first_input, layer, first_column, activations, _buffer_sizes);
-    store_pair((4u * _e2.x) + 66u, _e2.y, tile_2.a6_, tile_2.b6_, first_input, layer, first_column, activations, _buffer_sizes);
-    store_pair((4u * _e2.x) + 67u, _e2.y, tile_2.a7_, tile_2.b7_, first_input, layer, first_column, activations, _buffer_sizes);
+    store_pair(4u * _e2.x, _e2.y, tile_2.a0_, tile_2.b0_, first_input, layer, activations, first_column, _buffer_sizes);
+    store_pair((4u * _e2.x) + 1u, _e2.y, tile_2.a1_, tile_2.b1_, first_input, layer, activations, first_column, _buffer_sizes);
+    store_pair((4u * _e2.x) + 2u, _e2.y, tile_2.a2_, tile_2.b2_, first_input, layer, activations, first_column, _buffer_sizes);
+    store_pair((4u * _e2.x) + 3u, _e2.y, tile_2.a3_, tile_2.b3_, first_input, layer, activations, first_column, _buffer_sizes);
+    store_pair((4u * _e2.x) + 64u, _e2.y, tile_2.a4_, tile_2.b4_, first_input, layer, activations, first_column, _buffer_sizes);
+    store_pair((4u * _e2.x) + 65u, _e2.y, tile_2.a5_, tile_2.b5_, first_input, layer, activations, first_column, _buffer_sizes);
+    store_pair((4u * _e2.x) + 66u, _e2.y, tile_2.a6_, tile_2.b6_, first_input, layer, activations, first_column, _buffer_sizes);
+    store_pair((4u * _e2.x) + 67u, _e2.y, tile_2.a7_, tile_2.b7_, first_input, layer, activations, first_column, _buffer_sizes);
     return;
 }
 
@@ -407,7 +426,7 @@ struct deform_layer_backwardInput {
     first_column = group.y * TILE;
     uint _e16 = layer.outputs;
     uint steps_1 = naga_div((_e16 + STEP) - 1u, STEP);
-    Tile _e24 = product(0u, steps_1, thread_, left, right, first_input, layer, parameters, first_column, activations, _buffer_sizes);
-    store_tile(_e24, thread_, first_input, layer, first_column, activations, _buffer_sizes);
+    Tile _e24 = product(0u, steps_1, thread_, left, right, first_input, layer, parameters, activations, first_column, _buffer_sizes);
+    store_tile(_e24, thread_, first_input, layer, activations, first_column, _buffer_sizes);
     return;
 }

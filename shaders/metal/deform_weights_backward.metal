@@ -80,12 +80,9 @@ uint sum_parts(
 }
 
 Block transposed(
-    metal::float4 r0_,
-    metal::float4 r1_,
-    metal::float4 r2_,
-    metal::float4 r3_
+    Block rows
 ) {
-    metal::float4x4 columns = metal::transpose(metal::float4x4(r0_, r1_, r2_, r3_));
+    metal::float4x4 columns = metal::transpose(metal::float4x4(rows.k0_, rows.k1_, rows.k2_, rows.k3_));
     return Block {columns[0], columns[1], columns[2], columns[3]};
 }
 
@@ -100,7 +97,7 @@ metal::uint2 loaded_block(
     return metal::uint2(naga_mod(naga_div(t, 2u), 16u) + (16u * naga_div(t, 64u)), naga_mod(t, 2u) + (2u * naga_mod(naga_div(t, 32u), 2u)));
 }
 
-Block four_rows(
+Block activation_block(
     uint row,
     uint column,
     constant NetworkLayer& layer,
@@ -113,8 +110,7 @@ Block four_rows(
     metal::float4 _e15 = activations[at + stride];
     metal::float4 _e21 = activations[at + (2u * stride)];
     metal::float4 _e27 = activations[at + (3u * stride)];
-    Block _e28 = transposed(_e11, _e15, _e21, _e27);
-    return _e28;
+    return Block {_e11, _e15, _e21, _e27};
 }
 
 Block load_left(
@@ -132,8 +128,9 @@ Block load_left(
         return Block {};
     }
     uint _e12 = layer.output_row;
-    Block _e14 = four_rows(_e12 + output, column_1, layer, activations, _buffer_sizes);
-    return _e14;
+    Block _e14 = activation_block(_e12 + output, column_1, layer, activations, _buffer_sizes);
+    Block _e15 = transposed(_e14);
+    return _e15;
 }
 
 Block load_right(
@@ -151,8 +148,9 @@ Block load_right(
         return Block {};
     }
     uint _e12 = layer.input_row;
-    Block _e14 = four_rows(_e12 + input, column_2, layer, activations, _buffer_sizes);
-    return _e14;
+    Block _e14 = activation_block(_e12 + input, column_2, layer, activations, _buffer_sizes);
+    Block _e15 = transposed(_e14);
+    return _e15;
 }
 
 Block load_step(

@@ -11,6 +11,8 @@ macro_rules! wgsl {
 
 const NETWORK: &str = wgsl!("common/network");
 const MATRIX_TILE: &str = wgsl!("common/matrix_tile");
+const ACTIVATION_BLOCK: &str = wgsl!("common/activation_block");
+const WEIGHT_BLOCK: &str = wgsl!("common/weight_block");
 const DEFORMED_PARAMETERS: &str = wgsl!("common/deformed_parameters");
 
 /// Splats → input of the network.
@@ -19,8 +21,10 @@ pub const ENCODE: Shader = Shader {
     parts: &[DISPATCH, NUMBERS, TRIGONOMETRY, NETWORK, wgsl!("deform_encode")],
 };
 /// A hidden layer.
-pub const LAYER: Shader =
-    Shader { name: "deform_layer", parts: &[NETWORK, MATRIX_TILE, wgsl!("deform_layer")] };
+pub const LAYER: Shader = Shader {
+    name: "deform_layer",
+    parts: &[NETWORK, MATRIX_TILE, ACTIVATION_BLOCK, WEIGHT_BLOCK, wgsl!("deform_layer")],
+};
 /// The heads, and the deformed splats.
 pub const APPLY: Shader = Shader {
     name: "deform_apply",
@@ -50,12 +54,12 @@ pub const APPLY_BACKWARD: Shader = Shader {
 /// The mirror of a layer by its input.
 pub const LAYER_BACKWARD: Shader = Shader {
     name: "deform_layer_backward",
-    parts: &[NETWORK, MATRIX_TILE, wgsl!("deform_layer_backward")],
+    parts: &[NETWORK, MATRIX_TILE, ACTIVATION_BLOCK, WEIGHT_BLOCK, wgsl!("deform_layer_backward")],
 };
 /// The mirror of a layer by its parameters, in parts.
 pub const WEIGHTS_BACKWARD: Shader = Shader {
     name: "deform_weights_backward",
-    parts: &[NETWORK, MATRIX_TILE, wgsl!("deform_weights_backward")],
+    parts: &[NETWORK, MATRIX_TILE, ACTIVATION_BLOCK, wgsl!("deform_weights_backward")],
 };
 /// The sum of these parts.
 pub const WEIGHTS_SUM: Shader =
