@@ -108,8 +108,11 @@ impl CpuBackend {
         // are sorted), sums and keys.
         let splat_bytes = state_bytes + state_bytes / 3 + splats * (44 + 2 * 64 + 40 + 16);
         // Parameters, moments, gradient, the copy that is rendered; the way back.
-        let network = state.network.as_ref().map_or(0, |_| 2 * TrainedNetwork::bytes());
-        splat_bytes + network + state.network.as_ref().map_or(0, |_| NETWORK_WORKING_BYTES)
+        let network = match state.network {
+            Some(_) => 2 * TrainedNetwork::bytes() + NETWORK_WORKING_BYTES,
+            None => 0,
+        };
+        splat_bytes + network
     }
 
     /// Lends the splats to the scene that is rendered, or takes them back. The network, where it is
