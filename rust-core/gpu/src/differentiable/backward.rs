@@ -1,8 +1,8 @@
 //! The backward pass: what it binds, and its dispatches.
 
-use super::ImageGradientBuffers;
 use super::forward::FrameBuffers;
 use super::kernels::DifferentiableKernels;
+use super::{ImageGradientBuffers, times};
 use crate::kernel::whole;
 use crate::layout::argument;
 use crate::stage_pass::{Groups, begin_pass, dispatch};
@@ -137,7 +137,7 @@ impl BackwardBindings {
         let sums = kernels.sums(self.depth_gradient.is_some());
         {
             let mut pass =
-                begin_pass(encoder, "rasterize_backward", super::RASTERIZE_BACKWARD, timestamps);
+                begin_pass(encoder, "rasterize_backward", times::RASTERIZE_BACKWARD, timestamps);
             if let Some(bind_group) = &self.depth_gradient {
                 pass.set_pipeline(&kernels.depth_gradient);
                 pass.set_bind_group(0, bind_group, &[]);
@@ -148,14 +148,14 @@ impl BackwardBindings {
             dispatch(&mut pass, order.groups(argument::RASTERIZE));
         }
         {
-            let mut pass = begin_pass(encoder, "sum_slots", super::SUM_SLOTS, timestamps);
+            let mut pass = begin_pass(encoder, "sum_slots", times::SUM_SLOTS, timestamps);
             pass.set_bind_group(0, &self.sum_slots, &[]);
             pass.set_pipeline(&sums.sum_chunks);
             dispatch(&mut pass, order.groups(argument::ENTRY_CHUNKS));
             pass.set_pipeline(&sums.sum_splats);
             dispatch(&mut pass, Groups::Direct(count.div_ceil(256)));
         }
-        let mut pass = begin_pass(encoder, "project_backward", super::PROJECT_BACKWARD, timestamps);
+        let mut pass = begin_pass(encoder, "project_backward", times::PROJECT_BACKWARD, timestamps);
         pass.set_pipeline(&kernels.project_backward);
         pass.set_bind_group(0, &self.project, &[]);
         dispatch(&mut pass, Groups::Direct(count.div_ceil(256)));

@@ -2,6 +2,7 @@
 
 use super::buffers::{FrameUniforms, ImageBuffers, SlotBuffers, SplatBuffers};
 use super::kernels::DifferentiableKernels;
+use super::times;
 use crate::kernel::{part, whole};
 use crate::kernels::Kernels;
 use crate::layout::{Region, argument};
@@ -140,7 +141,7 @@ impl ForwardBindings {
         let FrameBuffers { splats, slots, image, .. } = frame;
         let order = &splats.order;
         {
-            let mut pass = begin_pass(encoder, "project", super::PROJECT, timestamps);
+            let mut pass = begin_pass(encoder, "project", times::PROJECT, timestamps);
             pass.set_pipeline(&own.project);
             pass.set_bind_group(0, &self.project, &[]);
             dispatch(&mut pass, Groups::Direct(splats.capacity.div_ceil(256)));
@@ -149,7 +150,7 @@ impl ForwardBindings {
             dispatch(&mut pass, Groups::Direct(self.parameters.count.div_ceil(64)));
         }
         {
-            let mut pass = begin_pass(encoder, "sort", super::SORT, timestamps);
+            let mut pass = begin_pass(encoder, "sort", times::SORT, timestamps);
             let blocks = Groups::Direct(splats.depth_blocks);
             splats.depth_sort.record(&kernels.sort, &mut pass, 0, blocks);
             pass.set_pipeline(&kernels.tiles.drawing_order);
@@ -161,7 +162,7 @@ impl ForwardBindings {
             }
         }
         {
-            let mut pass = begin_pass(encoder, "bin", super::BIN, timestamps);
+            let mut pass = begin_pass(encoder, "bin", times::BIN, timestamps);
             pass.set_pipeline(&own.count);
             pass.set_bind_group(0, &self.bin, &[0]);
             dispatch(&mut pass, order.groups(argument::BIN));
@@ -183,7 +184,7 @@ impl ForwardBindings {
             pass.set_bind_group(0, &self.resolve, &[]);
             dispatch(&mut pass, order.groups(argument::ENTRY_CHUNKS));
         }
-        let mut pass = begin_pass(encoder, "rasterize", super::RASTERIZE, timestamps);
+        let mut pass = begin_pass(encoder, "rasterize", times::RASTERIZE, timestamps);
         pass.set_pipeline(kernels.tiles.blending(depth));
         pass.set_bind_group(0, &self.rasterize, &[0]);
         dispatch(&mut pass, order.groups(argument::RASTERIZE));

@@ -1,7 +1,8 @@
 //! Bind groups: those of a layer, and those of the splats that are deformed.
 
+use super::BLOCK_STRIDE;
+use super::buffers::NetworkBuffers;
 use super::kernels::{DeformationKernels, Stage};
-use super::{BLOCK_STRIDE, NetworkBuffers};
 use crate::kernel::{part, whole};
 use crate::layout::{NetworkChunk, NetworkLayer};
 use crate::{Gpu, ParameterBuffers};

@@ -1,8 +1,8 @@
 //! Both passes as lists of dispatches: recorded one after the other into one pass, or each into a
 //! pass of its own, to be timed.
 
-use super::Chunk;
 use super::bindings::{BackwardBindings, ForwardBindings, LayerBindings};
+use super::chunk::Chunk;
 use super::kernels::{DeformationKernels, Stage};
 use super::network_layout::{NetworkLayout, TILE};
 use crate::kernel::folded;

@@ -27,6 +27,8 @@
 //! to 5 ms.
 
 mod bindings;
+mod buffers;
+mod chunk;
 mod dispatches;
 mod kernels;
 mod network_layout;
@@ -41,14 +43,16 @@ use std::time::Duration;
 
 use trapeze_scene::{DeformationNetwork, SceneError};
 
-use crate::layout::{NetworkChunk, NetworkLayer};
+use crate::layout::NetworkChunk;
 use crate::stage_pass::begin_pass;
 use crate::timing::Timer;
 use crate::{Gpu, GpuError, ParameterBuffers, readback};
 use bindings::{BackwardBindings, ForwardBindings, LayerBindings};
+use buffers::NetworkBuffers;
+use chunk::{Chunk, chunks, columns_within};
 use dispatches::{Dispatch, Layers};
 use kernels::STAGES;
-use network_layout::{NetworkLayout, STEP, TILE};
+use network_layout::NetworkLayout;
 
 /// Bytes between two uniform blocks: the largest alignment that a device may ask for.
 const BLOCK_STRIDE: u32 = 256;
@@ -72,43 +76,6 @@ pub struct DifferentiableDeformation {
     backward: Option<BackwardBindings>,
     /// Splats of the evaluation that was recorded last.
     evaluated: Option<u32>,
-}
-
-/// What does not depend on whose splats are deformed.
-#[derive(Debug)]
-struct NetworkBuffers {
-    parameters: wgpu::Buffer,
-    gradients: wgpu::Buffer,
-    activations: wgpu::Buffer,
-    parts: wgpu::Buffer,
-    /// One block per chunk.
-    chunks: wgpu::Buffer,
-    /// One block per layer.
-    layers: wgpu::Buffer,
-    deformed_positions: wgpu::Buffer,
-    deformed_log_scales: wgpu::Buffer,
-    deformed_rotations: wgpu::Buffer,
-}
-
-/// A run of splats that are evaluated together.
-#[derive(Clone, Copy, Debug)]
-struct Chunk {
-    index: u32,
-    first: u32,
-    splats: u32,
-    /// Columns that are computed: a multiple of [`TILE`].
-    columns: u32,
-}
-
-impl Chunk {
-    /// Offset of its uniform block.
-    fn offset(self) -> u32 {
-        self.index * BLOCK_STRIDE
-    }
-
-    fn steps(self) -> u32 {
-        self.columns / STEP
-    }
 }
 
 impl DifferentiableDeformation {
@@ -372,65 +339,8 @@ impl DifferentiableDeformation {
     }
 }
 
-impl NetworkBuffers {
-    fn new(
-        gpu: &Gpu,
-        layout: &NetworkLayout,
-        capacity: u32,
-        columns: u32,
-    ) -> Result<Self, GpuError> {
-        let chunks = capacity.div_ceil(columns).max(1) * BLOCK_STRIDE;
-        let mut layers = vec![0; layout.layers.len() * BLOCK_STRIDE as usize];
-        let slots = layers.chunks_exact_mut(BLOCK_STRIDE as usize);
-        for (slot, layer) in slots.zip(&layout.layers) {
-            slot[..size_of::<NetworkLayer>()].copy_from_slice(bytemuck::bytes_of(layer));
-        }
-        let parameter_bytes = 4 * layout.parameters as u64;
-        let activation_bytes = u64::from(columns) * layout.column_bytes();
-        let splats = u64::from(capacity);
-        for (what, need) in [
-            ("activations of 128 splats in one binding", activation_bytes),
-            ("gradients of a layer in one binding", layout.parts_bytes()),
-            ("rotations", splats * 16),
-        ] {
-            let have = gpu.max_binding();
-            if need > have {
-                return Err(GpuError::OutOfMemory { what, need, have });
-            }
-        }
-        Ok(Self {
-            parameters: gpu.storage("network", parameter_bytes)?,
-            gradients: gpu.storage("gradients of the network", parameter_bytes)?,
-            activations: gpu.storage("activations", activation_bytes)?,
-            parts: gpu.storage("parts of the network's gradients", layout.parts_bytes())?,
-            chunks: gpu.uniform_of("chunks", &vec![0; chunks as usize]),
-            layers: gpu.uniform_of("layers", &layers),
-            deformed_positions: gpu.storage("deformed positions", splats * 12)?,
-            deformed_log_scales: gpu.storage("deformed log-scales", splats * 12)?,
-            deformed_rotations: gpu.storage("deformed rotations", splats * 16)?,
-        })
-    }
-}
-
 /// Bytes of the deformed parameters of one splat.
 const DEFORMED_BYTES: u64 = 40;
-
-/// Columns of the activations: as many splats as there may be, or as fit.
-fn columns_within(layout: &NetworkLayout, capacity: u32, bytes: u64) -> u32 {
-    let wanted = u64::from(capacity.max(1)).next_multiple_of(u64::from(TILE));
-    let tiles = bytes / (layout.column_bytes() * u64::from(TILE));
-    wanted.min(tiles.max(1) * u64::from(TILE)) as u32
-}
-
-/// The splats in runs of at most `columns`; an empty run when there are none.
-fn chunks(splats: u32, columns: u32) -> Vec<Chunk> {
-    let chunk = |index: u32| {
-        let first = index * columns;
-        let splats = (splats - first).min(columns);
-        Chunk { index, first, splats, columns: splats.max(1).next_multiple_of(TILE) }
-    };
-    (0..splats.div_ceil(columns).max(1)).map(chunk).collect()
-}
 
 /// Runs dispatches, each in a pass of its own, waits for them, and adds up the times of each stage.
 fn timed(gpu: &Gpu, list: &[Dispatch<'_>]) -> Result<Option<DeformationTimes>, GpuError> {

@@ -24,7 +24,9 @@ mod layout;
 mod loss_stage;
 mod memory;
 mod network_stage;
+mod options;
 mod orders;
+mod record;
 mod reports;
 mod splats;
 mod targets;
@@ -35,9 +37,7 @@ mod update_stage;
 
 use std::sync::Arc;
 
-use trapeze_gpu::{
-    Created, ForwardSettings, Gpu, GpuError, ImageGradientBuffers, ParameterBuffers,
-};
+use trapeze_gpu::{Created, ForwardSettings, Gpu, GpuError, ParameterBuffers};
 use trapeze_scene::{Camera, DeformationNetwork, Frame, FrameSettings, ShDegree};
 
 use crate::backend::{BackendError, StepReport, TrainingBackend, TrainingView};
@@ -46,56 +46,13 @@ use crate::report_queue::ReportQueue;
 use crate::schedule::{DensifyPlan, StepPlan};
 use crate::{TrainedNetwork, TrainingState};
 use device::{DeviceSide, Run};
-use loss_stage::record_loss;
 pub use memory::GpuMemoryPlan;
 use network_stage::NetworkStage;
+pub use options::GpuBackendOptions;
 use orders::{Order, OrderLog, StepOrder};
 use reports::RawReport;
-use splats::ResidentSplats;
 use targets::ResidentTargets;
 pub use timing::GpuStepTimes;
-
-/// What the GPU may use.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct GpuBackendOptions {
-    /// Bytes that photographs may take.
-    pub target_budget: u64,
-    /// Bytes that the run may take on the device, photographs included.
-    pub memory_budget: u64,
-    /// Tile entries to make room for at first; the buffers grow when a view needs more. `None` makes
-    /// a guess from the number of splats.
-    pub initial_entries: Option<u32>,
-    /// Bytes that the deformation network's hidden features may take: 8.5 KB a splat, of as many
-    /// splats at a time as fit. When not all do, each step evaluates the network twice for most.
-    pub activation_budget: u64,
-}
-
-impl Default for GpuBackendOptions {
-    /// 512 MiB of photographs, as much for hidden features, 8 GiB in all.
-    fn default() -> Self {
-        Self {
-            target_budget: 512 << 20,
-            memory_budget: 8 << 30,
-            initial_entries: None,
-            activation_budget: 512 << 20,
-        }
-    }
-}
-
-impl GpuBackendOptions {
-    /// At most `bytes` where the device shares the system's memory; a device with memory of its own
-    /// says itself when that is full.
-    #[must_use]
-    pub fn within(gpu: &Gpu, bytes: u64) -> Self {
-        let has_own = gpu.adapter_info().device_type == wgpu::DeviceType::DiscreteGpu;
-        if has_own {
-            return Self { memory_budget: u64::MAX, ..Self::default() };
-        }
-        let default = Self::default();
-        let activation_budget = default.activation_budget.min(bytes / 8);
-        Self { memory_budget: bytes, activation_budget, ..default }
-    }
-}
 
 /// Trains on a GPU.
 pub struct GpuBackend {
@@ -227,73 +184,6 @@ impl GpuBackend {
                 })
             }
         }
-    }
-
-    fn record_step(&mut self, step: &StepOrder) -> Result<(), GpuError> {
-        let StepOrder { plan, view, target } = step;
-        let Some(run) = &mut self.run else { return Ok(()) };
-        let device = &mut self.device;
-        let mut encoder = device.gpu.device().create_command_encoder(&Default::default());
-        run.raise_degree(device, plan.sh_degree, &mut encoder)?;
-        let settings = ForwardSettings { max_sh_degree: plan.sh_degree, depth: false };
-        let drawn = match &plan.network {
-            None => run.splats.parameters.clone(),
-            Some(_) => run.record_pose(&mut encoder, plan.time_of(view))?,
-        };
-        run.renderer.forward(&mut encoder, &drawn, &view.camera, settings)?;
-        let replaced = device.loss.prepare(&device.gpu, target.size)?;
-        if run.bind_image(device, replaced) {
-            self.targets.unbind();
-        }
-        let bind = || device.bind_loss(run.renderer.image(), target);
-        let bind_group = match self.targets.get(view.id) {
-            Some(resident) => resident.loss.get_or_insert_with(bind).clone(),
-            // Dropped since the step was first asked for.
-            None => bind(),
-        };
-        let slot = device.reports.take_slot();
-        run.write_step(device, plan, target, slot);
-        {
-            let mut pass = timing::begin(&mut encoder, "loss", None);
-            record_loss(&device.kernels, &mut pass, &bind_group, target.size);
-            run.record_report(&device.kernels, &mut pass);
-        }
-        let by_image = ImageGradientBuffers { color: &device.loss.gradient, expected_depth: None };
-        run.renderer.backward(&mut encoder, &drawn, by_image, &run.splats.gradients)?;
-        if let (Some(_), Some(network)) = (&plan.network, &mut run.network) {
-            let (parameters, gradients) = (&run.splats.parameters, &run.splats.gradients);
-            let mut pass = timing::begin(&mut encoder, "deform_backward", None);
-            network.record_backward(&mut pass, parameters, gradients)?;
-        }
-        {
-            let mut pass = timing::begin(&mut encoder, "update", None);
-            run.record_update(&device.kernels, &mut pass, plan);
-        }
-        device.reports.record(&mut encoder, false);
-        device.submit(encoder);
-        self.step = plan.step + 1;
-        Ok(())
-    }
-
-    fn record_densify(&mut self, plan: &DensifyPlan, step: u32) -> Result<(), GpuError> {
-        let Some(run) = &mut self.run else { return Ok(()) };
-        let splats = run.splats.count();
-        if splats == 0 {
-            return Ok(());
-        }
-        let degree = run.splats.degree();
-        let bytes = |count| ResidentSplats::bytes(count, degree);
-        let (need, have) = (bytes(plan.count), bytes(run.splats.parameters.capacity));
-        if need > have {
-            return Err(GpuError::OutOfMemory { what: "splats", need, have });
-        }
-        let device = &mut self.device;
-        let mut encoder = device.gpu.device().create_command_encoder(&Default::default());
-        let stage = run.densify_stage(&device.gpu, &mut device.kernels)?;
-        stage.record(&device.gpu, &device.kernels, &mut encoder, plan, (splats, step));
-        device.submit(encoder);
-        run.splats.set_count(plan.count.max(splats));
-        Ok(())
     }
 
     /// Takes the reports that have arrived.

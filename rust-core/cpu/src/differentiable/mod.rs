@@ -20,11 +20,11 @@
 //! the weights of the network, in the order of `weights.bin`: a loss on the frame at any time trains
 //! splats and network together.
 
-use std::f32::consts::LOG2_E;
+mod splats;
+
 use std::time::{Duration, Instant};
 
-use fearless_simd::{Simd, dispatch};
-use fearless_simd_macros::simd;
+use fearless_simd::dispatch;
 use rayon::prelude::*;
 use trapeze_scene::{
     Camera, ColorSource, DeformationNetwork, Frame, FrameSettings, Scene, SceneError, Splats,
@@ -33,16 +33,15 @@ use trapeze_scene::{
 
 use crate::bin::BandLists;
 use crate::deform::{DeformationOptions, DeformationStage, Deformed};
-use crate::deform_backward::{
-    MovedSplats, OutputGradient, PoseRule, network_backward, unit_backward,
-};
-use crate::gradient::{GradientChunk, ImageGradient, PoseGradients, gradient_chunks, reset_like};
+use crate::deform_backward::{MovedSplats, OutputGradient, PoseRule, network_backward};
+use crate::gradient::{ImageGradient, PoseGradients, gradient_chunks, reset_like};
 use crate::project::{ProjectedSplat, ProjectedSplats, ProjectionStage, project};
-use crate::project_backward::{BackwardView, SplatInput, project_backward};
+use crate::project_backward::BackwardView;
 use crate::rasterize::{Outputs, Target, rasterize};
-use crate::rasterize_backward::{BackwardInput, BackwardMemory, SplatSums, rasterize_backward};
+use crate::rasterize_backward::{BackwardInput, BackwardMemory, rasterize_backward};
 use crate::sort::SortStage;
 use crate::{RendererOptions, StageTimes};
+use splats::{NOT_DRAWN, SplatsBackward, backward_chunk};
 
 /// Renders frames and keeps what the backward pass needs; one frame after another from the same
 /// working memory.
@@ -87,9 +86,6 @@ struct LastFrame {
     static_threshold: Option<f32>,
     splats: usize,
 }
-
-/// No rank: a splat that was not drawn.
-const NOT_DRAWN: u32 = u32::MAX;
 
 impl DifferentiableRenderer {
     /// A renderer with a choice of SIMD level and tile size.
@@ -360,74 +356,6 @@ impl DifferentiableRenderer {
         }
         Ok(())
     }
-}
-
-/// What the way from sums to parameters reads.
-struct SplatsBackward<'a> {
-    splats: &'a Splats,
-    poses: &'a Deformed,
-    opacities: &'a [f32],
-    /// In drawing order, as `sums`.
-    sorted: &'a [ProjectedSplat],
-    /// Place of each splat in that order, or [`NOT_DRAWN`].
-    rank_of: &'a [u32],
-    sums: &'a [SplatSums],
-    last: &'a LastFrame,
-}
-
-/// Carries the sums of consecutive splats back to their parameters. Scalar code, compiled for each
-/// SIMD level.
-#[simd]
-fn backward_chunk<S: Simd>(_: S, input: &SplatsBackward<'_>, chunk: &mut GradientChunk<'_>) {
-    for at in 0..chunk.len() {
-        let rank = input.rank_of[chunk.first + at];
-        if rank != NOT_DRAWN {
-            backward_splat(input, rank as usize, chunk, at);
-        }
-    }
-}
-
-#[inline(always)]
-fn backward_splat(
-    input: &SplatsBackward<'_>,
-    rank: usize,
-    chunk: &mut GradientChunk<'_>,
-    at: usize,
-) {
-    let (splats, last) = (input.splats, input.last);
-    let i = chunk.first + at;
-    let pose = input.poses.pose(i);
-    let parameters = SplatInput { pose, sh_dc: splats.sh_dc[i], sh_rest: splats.sh_rest_of(i) };
-    let by_pose = project_backward(
-        &last.view,
-        &parameters,
-        &input.sorted[rank],
-        &input.sums[rank],
-        chunk.sh_rest_of(at),
-    );
-    if let Some(poses) = &mut chunk.poses {
-        poses.positions[at] = by_pose.position;
-        poses.rotations[at] = by_pose.rotation;
-        poses.scales[at] = by_pose.scale;
-    }
-    let by_sum = last.pose_rule.sum_backward(&pose, by_pose.rotation, by_pose.scale);
-    if let Some(outputs) = &mut chunk.outputs {
-        let [x, y, z] = by_pose.position;
-        let ([qw, qx, qy, qz], [sx, sy, sz]) = (by_sum.rotation, by_sum.scale);
-        outputs[at] = [x, y, z, qw, qx, qy, qz, sx, sy, sz];
-    }
-    let canonical = match last.pose_rule {
-        PoseRule::Static => pose,
-        PoseRule::Deformed(_) => Deformed::static_pose(splats, i),
-    };
-    chunk.positions[at] = by_pose.position;
-    chunk.rotations[at] =
-        unit_backward(canonical.rotation, canonical.rotation_length, by_sum.rotation);
-    chunk.log_scales[at] = std::array::from_fn(|c| by_sum.scale[c] * canonical.scale[c]);
-    // d log₂ σ(x) = (1 − σ(x)) / ln 2 dx.
-    let transparency = 1.0 - input.opacities[i];
-    chunk.opacity_logits[at] = by_pose.log2_opacity * transparency * LOG2_E;
-    chunk.sh_dc[at] = by_pose.sh_dc;
 }
 
 /// Time since the last lap.
