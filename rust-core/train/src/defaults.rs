@@ -31,7 +31,7 @@ const NOISY_SHARE: f64 = 0.5;
 /// before the first of them moves to another's place.
 const UNDISTURBED_SHARE: f64 = 3.0 / 20.0;
 /// Random splats that a scene that moves begins with, at most.
-const RANDOM_SPLATS_IN_MOTION: u32 = 30_000;
+const RANDOM_SPLATS_IN_MOTION: u32 = 15_000;
 /// Noise of the time at its first step, by the time between two photographs.
 const NOISE_OF_INTERVAL: f64 = 0.1;
 
@@ -113,7 +113,7 @@ mod tests {
         prepare_for_motion(&mut config);
         config.validate().unwrap();
         assert_eq!(config.densification.unwrap().start, 3_000);
-        assert_eq!((config.initial.random_count, config.initial.opacity), (25_000, 0.1));
+        assert_eq!((config.initial.random_count, config.initial.opacity), (15_000, 0.1));
         let mut fixed = TrainingConfig::fixed(20_000);
         prepare_for_motion(&mut fixed);
         assert_eq!(fixed, TrainingConfig::fixed(20_000));

@@ -44,7 +44,8 @@ fn moving_balls_are_learned_between_the_moments_that_were_seen() {
 #[test]
 fn while_warming_up_the_network_is_neither_evaluated_nor_changed() {
     let views = views(&[0.0, 0.5, 1.0]);
-    let warming = DeformationTraining { warm_up: 30, ..DeformationTraining::default() };
+    let warming =
+        DeformationTraining { warm_up: 30, undisturbed: 0, ..DeformationTraining::default() };
     let mut config = config(20, Some(warming));
     let mut backend = loaded(start(), &config, &views);
     take_steps(&mut backend, &views, &config);

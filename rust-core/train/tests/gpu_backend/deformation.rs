@@ -14,6 +14,7 @@ fn config(steps: u32) -> TrainingConfig {
         warm_up: WARM_UP,
         time_noise: 0.02,
         noisy_steps: 20,
+        undisturbed: 0,
         ..DeformationTraining::default()
     };
     TrainingConfig { deformation: Some(deformation), ..TrainingConfig::growing(steps, 200) }
