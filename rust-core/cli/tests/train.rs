@@ -218,6 +218,40 @@ fn a_run_that_is_interrupted_saves_says_so_and_goes_on() {
     assert_eq!(splats_of(&out), expected);
 }
 
+/// A limit on the size of files stands in for a full disk: a write ends in the middle with an error.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_checkpoint_that_does_not_fit_is_named_and_the_last_one_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let settings = folder.path().join("settings.json");
+    let growing = r#"{"checkpoint_interval": 100, "densification": {"start": 200, "growth": 0.5}}"#;
+    std::fs::write(&settings, growing).unwrap();
+    let settings = settings.to_str().unwrap();
+    let options = ["--steps", "400", "--max-splats", "1200", "--settings", settings, "--resume"];
+    let out = folder.path().join("full");
+    // A checkpoint of 800 splats of SH degree 0 has 135 KB, one of 1 200 has 203.
+    let limited = r#"trap '' XFSZ; exec prlimit --fsize=170000 "$0" "$@""#;
+    let output = Command::new("sh")
+        .args(["-c", limited, env!("CARGO_BIN_EXE_trapeze")])
+        .args(training(&out, &options))
+        .output()
+        .unwrap();
+    let errors = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{errors}");
+    let last = errors.lines().last().unwrap();
+    assert!(last.starts_with("error: ") && last.contains(".checkpoint: "), "{errors}");
+    let kept: Vec<_> = std::fs::read_dir(out.join("checkpoints")).unwrap().collect();
+    assert!(
+        !kept.is_empty()
+            && kept.iter().all(|file| file.as_ref().unwrap().metadata().unwrap().len() < 170_000)
+    );
+
+    succeed(&training(&out, &options));
+    let whole = folder.path().join("whole");
+    succeed(&training(&whole, &options));
+    assert_eq!(splats_of(&out), splats_of(&whole));
+}
+
 #[test]
 fn runs_that_cannot_begin_are_refused_in_one_line() {
     let folder = tempfile::tempdir().unwrap();
