@@ -14,7 +14,10 @@ use trapeze_scene::{Rgba8, ShDegree};
 use trapeze_train::checkpoint::CheckpointFolder;
 use trapeze_train::config::{Background, TrainingConfig};
 use trapeze_train::trainer::{Event, Report};
-use trapeze_train::{TrainerOptions, background_for_training, splat_ceiling};
+use trapeze_train::{
+    TrainerOptions, background_for_training, deformation_for_training, prepare_for_motion,
+    splat_ceiling,
+};
 
 use crate::dataset::Dataset;
 use crate::device::Device;
@@ -113,12 +116,23 @@ fn configuration(
         0 => TrainingConfig::automatic(steps, splat_ceiling(memory.unwrap_or(u64::MAX), degree)),
         splats => TrainingConfig::growing(steps, splats),
     };
-    Ok(TrainingConfig {
+    let photographs = dataset.shared();
+    // Geographic captures are trained as if nothing moved: the network sees coordinates near 0 only.
+    let deformation = match photographs.origin {
+        DVec3::ZERO => deformation_for_training(photographs, steps)?,
+        _ => None,
+    };
+    let mut config = TrainingConfig {
         sh_degree: parameters.harmonics_degree,
         holdout: dataset.holdout(),
-        background: background_for_training(dataset.shared())?,
+        background: background_for_training(photographs)?,
+        deformation,
         ..config
-    })
+    };
+    if config.deformation.is_some() {
+        prepare_for_motion(&mut config);
+    }
+    Ok(config)
 }
 
 /// Bytes that may be taken without pushing others out; `None` where the system does not say.
@@ -270,8 +284,14 @@ impl Trainer {
         })
     }
 
+    /// The scene as it is now; of a complete run as its files have it, with what was measured.
     pub(crate) fn trained_scene(&self) -> Result<Scene, Failure> {
-        self.with(|run| Ok(Scene::new(run.scene()?)))
+        self.with(|run| {
+            Ok(Scene::new(match finish::result(&self.folder) {
+                Some(files) => trapeze_formats::load_scene(&files)?,
+                None => run.scene()?,
+            }))
+        })
     }
 
     fn with<T>(

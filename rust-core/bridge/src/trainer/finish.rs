@@ -1,12 +1,15 @@
 //! The end of a run: its scene as a file, and how good that is.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use trapeze_formats::dataset::Dataset;
-use trapeze_formats::{load_scene, ply, write_atomically};
-use trapeze_scene::FrameSettings;
+use trapeze_formats::{
+    load_scene, ply, write_atomically, write_mask_bin, write_mask_json, write_weights_bin,
+};
+use trapeze_scene::{Camera, FrameSettings, Scene};
 use trapeze_train::evaluation::evaluate;
+use trapeze_train::with_measured_motion;
 
 use super::checkpoints;
 use super::run::TrainingRun;
@@ -18,6 +21,8 @@ use crate::work::Work;
 
 /// Name of the splats in the folder of a run.
 const SPLATS: &str = "point_cloud.ply";
+/// Name of the deformation network there, of a scene that moves.
+const NETWORK: &str = "weights.bin";
 /// Name of the summary: with it a run is complete.
 const SUMMARY: &str = "training.json";
 
@@ -26,6 +31,28 @@ pub(super) fn refuse_finished(folder: &Path) -> Result<(), Failure> {
     if folder.join(SUMMARY).exists() {
         let found = format!("a complete run in {}", folder.display());
         return Err(Failure::argument("training folder", "a new run, or one to go on with", found));
+    }
+    Ok(())
+}
+
+/// What is to be loaded of a complete run: the file of a scene that rests, the folder of one that
+/// moves.
+pub(super) fn result(folder: &Path) -> Option<PathBuf> {
+    folder.join(SUMMARY).exists().then(|| scene_in(folder))
+}
+
+fn scene_in(folder: &Path) -> PathBuf {
+    if folder.join(NETWORK).exists() { folder.into() } else { folder.join(SPLATS) }
+}
+
+/// Writes the splats, and of a scene that moves the original app's files beside them.
+fn save(scene: &Scene, folder: &Path) -> Result<(), Failure> {
+    ply::write_ply(&folder.join(SPLATS), scene)?;
+    let Some(network) = &scene.deformation else { return Ok(()) };
+    write_weights_bin(&folder.join(NETWORK), network)?;
+    if let Some(motion) = &scene.motion {
+        write_mask_bin(&folder.join("mask.bin"), motion)?;
+        write_mask_json(&folder.join("mask.json"), motion)?;
     }
     Ok(())
 }
@@ -39,11 +66,15 @@ pub(super) fn finish(
     work: &Work,
 ) -> Result<TestFigures, Failure> {
     work.step(Stage::Writing, None)?;
-    let splats = folder.join(SPLATS);
-    ply::write_ply(&splats, &run.scene()?)?;
     let mut summary = run.summary();
-    // The file is evaluated, as anyone else would load it, not what was in memory.
-    let mut renderer = Backend::new(device, Arc::new(load_scene(&splats)?), Options::default())?;
+    let cameras: Vec<Camera> =
+        dataset.training_views().map(|index| dataset.views[index].camera.clone()).collect();
+    let (scene, motion) = with_measured_motion(run.scene()?, &cameras)?;
+    summary.motion = motion;
+    save(&scene, folder)?;
+    // The files are evaluated, as anyone else would load them, not what was in memory.
+    let scene = Arc::new(load_scene(&scene_in(folder))?);
+    let mut renderer = Backend::new(device, scene, Options::default())?;
     let views: Vec<usize> = dataset.test_views().collect();
     let mut done = 0;
     summary.test = evaluate(dataset, &views, None, |index| {

@@ -10,9 +10,12 @@ const STEPS: u32 = 24;
 
 /// 50 × 50 pixels a view, every eighth held out.
 fn dataset() -> Dataset {
-    let file =
-        concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/sample-dataset/transforms_static.json");
-    inspect_dataset(file.into(), 4, 8).unwrap()
+    photographs("transforms_static.json")
+}
+
+fn photographs(file: &str) -> Dataset {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/sample-dataset");
+    inspect_dataset(format!("{folder}/{file}"), 4, 8).unwrap()
 }
 
 fn device(backend: Backend) -> Result<Device, Failure> {
@@ -128,4 +131,27 @@ fn a_run_on_the_cpu_is_paused_shown_and_finished() {
     assert!(folder.path().join("point_cloud.ply").exists());
     let again = trainer(&cpu, Backend::Automatic, folder.path()).unwrap_err();
     assert_eq!(again.kind(), Code::InvalidArgument);
+}
+
+#[test]
+fn photographs_of_many_times_leave_a_scene_folder_that_moves() {
+    let folder = tempfile::tempdir().unwrap();
+    let cpu = device(Backend::Cpu).unwrap();
+    let parameters = TrainParameters {
+        steps: STEPS,
+        max_splats: 300,
+        harmonics_degree: 0,
+        memory_limit: 0,
+        backend: Backend::Cpu,
+    };
+    let path = folder.path().to_str().unwrap();
+    let moving = photographs("transforms_train.json");
+    let run = make_trainer(&cpu, &moving, parameters, path.into(), &Work::new()).unwrap();
+    advance_to(&run, STEPS);
+    assert!(run.finish(&Work::new()).unwrap().psnr > 5.0);
+    for file in ["point_cloud.ply", "weights.bin", "mask.bin", "mask.json", "training.json"] {
+        assert!(folder.path().join(file).exists(), "{file}");
+    }
+    let figures = run.trained_scene().unwrap().figures();
+    assert!(figures.deformable && figures.splats > 0);
 }
