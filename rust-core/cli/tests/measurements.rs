@@ -79,7 +79,7 @@ fn a_report_has_a_row_per_variant_in_all_three_forms() {
     let scene = thinned_scene(folder.path());
     let out = folder.path().join("report");
     let mut arguments = arguments!["report", scene, "--out", &out].to_vec();
-    arguments.extend(["--size", "32x24", "--views", "1"].map(Into::into));
+    arguments.extend(["--size", "32x24", "--views", "1", "--backend", "all"].map(Into::into));
     let printed = succeed(&arguments);
     let read = |name: &str| std::fs::read_to_string(out.join(name)).unwrap();
     let (markdown, svg) = (read("report.md"), read("report.svg"));

@@ -41,8 +41,10 @@ pub(crate) struct Arguments {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 enum Compared {
-    /// Those of the CPU, and those of the GPU where there is one.
+    /// Those of the CPU, and those of the GPU where there is one that is no software.
     #[default]
+    Auto,
+    /// Those of the CPU, and those of the GPU where there is one, software or not.
     All,
     /// Those of the CPU.
     Cpu,
@@ -93,10 +95,12 @@ fn make_report(
     let gpu = match arguments.backend {
         Compared::Cpu => None,
         Compared::Gpu => Some(open_gpu()?),
-        Compared::All => open_gpu()
+        Compared::All | Compared::Auto => open_gpu()
             .inspect_err(|why| tracing::warn!("the GPU's variants are left out: {why}"))
             .ok(),
     };
+    // Its kernels run on the CPU after all, each frame for seconds, and say nothing about a GPU.
+    let gpu = gpu.filter(|gpu| arguments.backend != Compared::Auto || !gpu.is_software());
     let mut variants = Vec::new();
     if arguments.backend != Compared::Gpu {
         variants.extend(cpu_variants(scene));
