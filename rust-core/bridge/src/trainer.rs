@@ -287,9 +287,9 @@ impl Trainer {
     /// The scene as it is now; of a complete run as its files have it, with what was measured.
     pub(crate) fn trained_scene(&self) -> Result<Scene, Failure> {
         self.with(|run| {
-            Ok(Scene::new(match finish::result(&self.folder) {
-                Some(files) => trapeze_formats::load_scene(&files)?,
-                None => run.scene()?,
+            Ok(Scene::new(match finish::is_complete(&self.folder) {
+                true => trapeze_formats::load_scene(&self.folder)?,
+                false => run.scene()?,
             }))
         })
     }

@@ -53,7 +53,7 @@ pub use mask::{
 };
 pub use npy::{NpyArray, NpyValues, parse_npy, read_npy, write_npy};
 pub use npz::{parse_npz, read_npz};
-pub use save::save_scene;
+pub use save::{save_scene, save_scene_folder};
 pub use scene_path::SplatFormat;
 pub use torch::{parse_clusters_pt, parse_deform_pth, read_clusters_pt, read_deform_pth};
 pub use weights_bin::{WEIGHTS_BIN_BYTES, parse_weights_bin, read_weights_bin, write_weights_bin};

@@ -13,18 +13,14 @@ use crate::{
 };
 
 /// Saves a scene: to one splat file when the name ends like one (`.ply`, `.compressed.ply`,
-/// `.splat`, `.spz`), else to a scene folder with `point_cloud.ply` and everything that the scene
-/// has.
-///
-/// In a folder, files of parts that the scene does not have are removed: they would belong to
-/// other splats.
+/// `.splat`, `.spz`), else to a folder, as [`save_scene_folder`].
 ///
 /// # Errors
 /// [`WriteError`] when the format cannot hold the scene, or with the operating system's reason.
 pub fn save_scene(path: &Path, scene: &Scene) -> Result<(), WriteError> {
     match SplatFormat::of_name(path) {
         Some(format) => save_splats(path, scene, format),
-        None => save_folder(path, scene),
+        None => save_scene_folder(path, scene),
     }
 }
 
@@ -43,7 +39,12 @@ fn save_splats(path: &Path, scene: &Scene, format: SplatFormat) -> Result<(), Wr
     }
 }
 
-fn save_folder(folder: &Path, scene: &Scene) -> Result<(), WriteError> {
+/// Saves a scene to a folder, whatever its name: `point_cloud.ply`, and everything that the scene has
+/// beside it. Files of parts that it does not have are removed: they would belong to other splats.
+///
+/// # Errors
+/// [`WriteError`] when the files cannot hold the scene, or with the operating system's reason.
+pub fn save_scene_folder(folder: &Path, scene: &Scene) -> Result<(), WriteError> {
     let io = |path: &Path| {
         let path = path.to_owned();
         move |source| WriteError::Io { path, source }

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use trapeze_cpu::motion::{
     MotionOptions, ShareOutcome, compare_static_shares, measure_motion, recommended_percentile,
 };
+use trapeze_formats::dataset::Dataset;
 use trapeze_scene::{Camera, Motion, Scene, SceneError};
 
 /// Views on which shares are compared, at most, and the most pixels along their longer side: what a
@@ -34,26 +35,32 @@ pub struct MotionSummary {
 
 /// Gives a scene that moves its motion values, measured at 64 times, and the share of splats that
 /// may rest: the largest that keeps
-/// [`RECOMMENDED_MIN_PSNR`](trapeze_cpu::motion::RECOMMENDED_MIN_PSNR) in some of `cameras` (world
-/// coordinates) at eight times. A scene without a network comes back as it is.
+/// [`RECOMMENDED_MIN_PSNR`](trapeze_cpu::motion::RECOMMENDED_MIN_PSNR) in some of the training views of
+/// `dataset` at eight times. A scene without a network comes back as it is.
+///
+/// `progress` is called every fraction of a second or so; when it breaks, what comes back is
+/// unfinished.
 ///
 /// # Errors
 /// [`SceneError`] when a camera cannot project.
 pub fn with_measured_motion(
     scene: Scene,
-    cameras: &[Camera],
+    dataset: &Dataset,
+    mut progress: impl FnMut() -> ControlFlow<()>,
 ) -> Result<(Scene, Option<MotionSummary>), SceneError> {
-    let go_on = |_, _| ControlFlow::Continue(());
     let measured = match &scene.deformation {
-        Some(_) => measure_motion(&scene, &MotionOptions::default(), go_on),
+        Some(_) => measure_motion(&scene, &MotionOptions::default(), |_, _| progress()),
         None => None,
     };
     let Some(motion) = measured else { return Ok((scene, None)) };
     let scene = Arc::new(Scene { motion: Some(motion), ..scene });
-    let every = cameras.len().div_ceil(MOST_VIEWS).max(1);
-    let views: Vec<Camera> = cameras.iter().step_by(every).map(reduced).collect();
-    let outcomes =
-        compare_static_shares(&scene, &SHARES, &views, &TIMES, |_| ControlFlow::Continue(()))?;
+    let every = dataset.training_views().count().div_ceil(MOST_VIEWS).max(1);
+    let views: Vec<Camera> = dataset
+        .training_views()
+        .step_by(every)
+        .map(|index| reduced(&dataset.views[index].camera))
+        .collect();
+    let outcomes = compare_static_shares(&scene, &SHARES, &views, &TIMES, |_| progress())?;
     let recommended = recommended_percentile(&outcomes);
     let summary = match outcomes.iter().find(|outcome| outcome.percentile == recommended) {
         Some(outcome) => MotionSummary::of(outcome),

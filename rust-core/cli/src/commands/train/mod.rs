@@ -8,13 +8,13 @@ mod output;
 mod previews;
 mod settings;
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use sysinfo::System;
 use trapeze_formats::dataset::Dataset;
 use trapeze_formats::load_scene;
-use trapeze_scene::Camera;
 use trapeze_train::backend::TrainingBackend;
 use trapeze_train::trainer::{Event, TrainingSummary};
 use trapeze_train::{
@@ -172,9 +172,7 @@ fn train<B: TrainingBackend>(
     let scene = trainer.scene()?;
     let mut summary = trainer.summary();
     drop(trainer);
-    let cameras: Vec<Camera> =
-        dataset.training_views().map(|index| dataset.views[index].camera.clone()).collect();
-    let (scene, motion) = with_measured_motion(scene, &cameras)?;
+    let (scene, motion) = with_measured_motion(scene, dataset, || ControlFlow::Continue(()))?;
     summary.motion = motion;
     let scene = folder.save_scene(&scene, arguments.format)?;
     // The file is evaluated, as anyone else would load it, not what was in memory.

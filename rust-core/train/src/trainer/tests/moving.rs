@@ -1,12 +1,14 @@
 //! Runs of scenes that move, on the CPU's own backend.
 
+use std::ops::ControlFlow;
+
 use glam::DVec3;
 use trapeze_scene::{DeformationNetwork, Scene};
 
 use super::*;
 use crate::backend::TrainingBackend;
 use crate::config::{Background, DeformationTraining};
-use crate::{CpuBackend, TrainedNetwork, deformation_for_training};
+use crate::{CpuBackend, TrainedNetwork, deformation_for_training, with_measured_motion};
 
 /// The capture, each photograph at a time of its own.
 fn moving_place() -> Workplace {
@@ -133,4 +135,22 @@ fn settings_follow_from_the_times_of_the_photographs() {
     }
     assert_eq!(settings(40_000), DeformationTraining { time_noise: 0.0, ..captured });
     assert_eq!(crate::background_for_training(&place.dataset).unwrap(), Background::Random);
+}
+
+#[test]
+fn measuring_motion_ends_when_it_is_told_to() {
+    let place = moving_place();
+    let scene = run(&place, &moving_config(12), &[], false);
+    let mut calls = 0;
+    let broken_off = |calls: &mut u32| {
+        *calls += 1;
+        ControlFlow::Break(())
+    };
+    let (_, summary) =
+        with_measured_motion(scene.clone(), &place.dataset, || broken_off(&mut calls)).unwrap();
+    assert_eq!((summary, calls), (None, 1));
+    let go_on = || ControlFlow::Continue(());
+    let (measured, summary) = with_measured_motion(scene, &place.dataset, go_on).unwrap();
+    let motion = measured.motion.unwrap();
+    assert_eq!(motion.recommended_percentile, summary.map(|s| s.recommended_percentile));
 }
