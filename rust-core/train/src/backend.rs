@@ -41,7 +41,7 @@
 use std::sync::Arc;
 
 use thiserror::Error;
-use trapeze_scene::{Camera, Frame, FrameSettings};
+use trapeze_scene::{Camera, Frame, FrameSettings, ShDegree};
 
 use crate::TrainingState;
 use crate::loss::{LossValue, TargetImage};
@@ -188,6 +188,19 @@ pub trait TrainingBackend {
     /// # Errors
     /// [`BackendError`] when the device fails.
     fn reports(&mut self, step: u32) -> Result<Vec<StepReport>, BackendError>;
+
+    /// ∂L/∂(opacity logit) of every resident splat, for ∂L/∂(r, g, b premultiplied over black, alpha)
+    /// of every pixel of a view, drawn with SH bands up to `sh_degree`. Waits.
+    ///
+    /// # Errors
+    /// [`BackendError`] when the view cannot be drawn, the gradient has another size, or the device
+    /// fails.
+    fn opacity_gradient(
+        &mut self,
+        view: &TrainingView,
+        sh_degree: ShDegree,
+        by_image: &[[f32; 4]],
+    ) -> Result<Vec<f32>, BackendError>;
 
     /// Renders the resident splats. Waits.
     ///

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use fearless_simd::Level;
 use trapeze_cpu::{ImageGradient, reference};
-use trapeze_scene::{Camera, Frame, FrameSettings, Scene, Splats};
+use trapeze_scene::{Camera, Frame, FrameSettings, Scene, ShDegree, Splats};
 
 use crate::TrainingState;
 use crate::backend::{BackendError, StepReport, TrainingBackend, TrainingView};
@@ -145,6 +145,25 @@ impl TrainingBackend for ReferenceBackend {
 
     fn reports(&mut self, step: u32) -> Result<Vec<StepReport>, BackendError> {
         Ok(self.reports.take_up_to(step))
+    }
+
+    fn opacity_gradient(
+        &mut self,
+        view: &TrainingView,
+        sh_degree: ShDegree,
+        by_image: &[[f32; 4]],
+    ) -> Result<Vec<f32>, BackendError> {
+        let refuse = |reason: String| BackendError::View { id: view.id, reason };
+        view.camera.validate().map_err(|error| refuse(error.to_string()))?;
+        let pixels = view.camera.width as usize * view.camera.height as usize;
+        if by_image.len() != pixels {
+            return Err(refuse(format!("expected {pixels} pixels, found {}", by_image.len())));
+        }
+        let settings =
+            FrameSettings { time: view.time, max_sh_degree: sh_degree, ..FrameSettings::default() };
+        let gradient = ImageGradient { color: by_image, expected_depth: None };
+        let by = reference::gradients(&self.scene(true), &view.camera, &settings, &gradient);
+        Ok(by.splats.iter().map(|by| by.opacity_logit as f32).collect())
     }
 
     fn render(&mut self, camera: &Camera, settings: &FrameSettings) -> Result<Frame, BackendError> {

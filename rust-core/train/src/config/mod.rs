@@ -119,8 +119,10 @@ pub struct BudgetSearch {
     /// What a doubling of the scene's numbers has to bring on the validation views within one
     /// trial, dB of PSNR.
     pub least_gain: f64,
-    /// Growth that is tried, as a share of the splats.
+    /// Growth that is tried first, as a share of the splats.
     pub growth: f64,
+    /// Whether splats leave that are not worth keeping.
+    pub thinning: bool,
     /// Steps of a trial, as a share of the run.
     pub trial: f64,
     /// Every how many-th training view validates until the search has ended.
@@ -129,7 +131,7 @@ pub struct BudgetSearch {
 
 impl Default for BudgetSearch {
     fn default() -> Self {
-        Self { least_gain: 0.2, growth: 0.4, trial: 1.0 / 14.0, validation: 8 }
+        Self { least_gain: 0.1, growth: 0.4, thinning: true, trial: 1.0 / 14.0, validation: 8 }
     }
 }
 

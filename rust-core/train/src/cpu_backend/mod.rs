@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use fearless_simd::Level;
 use trapeze_cpu::{DifferentiableRenderer, ImageGradient, RendererOptions};
-use trapeze_scene::{Camera, Frame, FrameSettings, Scene, Splats};
+use trapeze_scene::{Camera, Frame, FrameSettings, Scene, ShDegree, Splats};
 
 use crate::backend::{BackendError, StepReport, TrainingBackend, TrainingView};
 use crate::densify::densify;
@@ -242,6 +242,26 @@ impl TrainingBackend for CpuBackend {
 
     fn reports(&mut self, step: u32) -> Result<Vec<StepReport>, BackendError> {
         Ok(self.reports.take_up_to(step))
+    }
+
+    fn opacity_gradient(
+        &mut self,
+        view: &TrainingView,
+        sh_degree: ShDegree,
+        by_image: &[[f32; 4]],
+    ) -> Result<Vec<f32>, BackendError> {
+        self.lend(true);
+        let settings =
+            FrameSettings { time: view.time, max_sh_degree: sh_degree, ..FrameSettings::default() };
+        let Self { renderer, scene, by_splats, .. } = self;
+        let drawn = renderer.forward(scene, &view.camera, &settings).map(|_| ());
+        let gradient = ImageGradient { color: by_image, expected_depth: None };
+        let result = drawn.map_err(|error| error.to_string()).and_then(|()| {
+            renderer.backward(scene, &gradient, by_splats).map_err(|error| error.to_string())
+        });
+        self.lend(false);
+        result.map_err(|reason| BackendError::View { id: view.id, reason })?;
+        Ok(self.by_splats.opacity_logits.clone())
     }
 
     fn render(&mut self, camera: &Camera, settings: &FrameSettings) -> Result<Frame, BackendError> {

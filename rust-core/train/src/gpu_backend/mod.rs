@@ -355,6 +355,23 @@ impl TrainingBackend for GpuBackend {
         Ok(self.ready.take_up_to(step))
     }
 
+    fn opacity_gradient(
+        &mut self,
+        view: &TrainingView,
+        sh_degree: ShDegree,
+        by_image: &[[f32; 4]],
+    ) -> Result<Vec<f32>, BackendError> {
+        self.settle()?;
+        let Some(run) = &mut self.run else { return Ok(Vec::new()) };
+        let forward = ForwardSettings { max_sh_degree: sh_degree, depth: false };
+        let mut encoder = self.device.gpu.device().create_command_encoder(&Default::default());
+        let posed = run.record_pose(&mut encoder, view.time).map_err(backend_error)?;
+        self.device.submit(encoder);
+        let drawn = run.renderer.forward_and_wait(&posed, &view.camera, forward);
+        let gradient = drawn.and_then(|_| run.renderer.backward_and_wait(&posed, by_image, None));
+        gradient.map(|splats| splats.opacity_logits).map_err(backend_error)
+    }
+
     fn render(&mut self, camera: &Camera, settings: &FrameSettings) -> Result<Frame, BackendError> {
         self.settle()?;
         let Some(run) = &mut self.run else { return Ok(Frame::default()) };

@@ -26,6 +26,8 @@ pub enum Purpose {
     /// First weights of the deformation network; the step is the layer, the index a quarter of the
     /// place of the weight.
     NetworkInitialisation = 8,
+    /// Signs that tell what splats are worth; the index is 32 pixels, the part is the probe.
+    RemovalProbe = 9,
 }
 
 /// Random words addressed by (seed, purpose, step, index): what is drawn depends on the address

@@ -4,11 +4,18 @@
 //!
 //! Some of the *training* views are set aside to validate (held-out views are never read). From a
 //! state of the run two branches go on over the same steps and the same views: one as it is, one
-//! with more splats or with one more SH band. The difference of their PSNR on the validation views
-//! is what the change brought; nothing else differs, so the gain of merely training longer cancels.
-//! A change is kept when it brought at least `least_gain` dB per doubling of the scene's numbers.
-//! More splats and more bands are tried in turn; what failed twice in a row is settled, and when
-//! both are, or when growth has to stop, the search ends and the validation views are trained on.
+//! with more splats, with fewer, or with one more SH band. The difference of their PSNR on the
+//! validation views is what the change brought; nothing else differs, so the gain of merely training
+//! longer cancels. A change is kept when it brought at least `least_gain` dB per doubling of the
+//! scene's numbers, or cost less than that per halving.
+//!
+//! First the set grows, in a stride twice as long where growth brought far more than it had to, until
+//! it was refused twice in a row. Growth duplicates what is opaque, not what will be good for
+//! something: then those splats leave that the image would miss least
+//! ([`RemovalCosts`](crate::densify::RemovalCosts)), as many as the same price says, until hardly any
+//! are to go or their leaving is refused. Last come bands, for a set where each splat has more to
+//! show. Then, or when the set has to stay as it is, the search ends and the validation views are
+//! trained on.
 //!
 //! The branch that is kept is the run: no step of it is lost. Decisions depend on steps, never on
 //! the clock, and every one is kept with its evidence.
@@ -19,8 +26,12 @@ use trapeze_scene::ShDegree;
 use crate::config::{BudgetSearch, TrainingConfig};
 use crate::densify::grown_count;
 
-/// Failures in a row after which something is not tried again.
-const FAILURES: usize = 2;
+/// Refusals in a row after which the set grows no more: of a large stride, and of the smallest.
+const REFUSALS_OF_GROWTH: usize = 2;
+/// Growth that brought this many times what it had to is tried in a stride twice as long.
+const GENEROUS: f64 = 2.0;
+/// Trials that growth leaves time for: to thin what has grown, and to try a band.
+const TRIALS_AFTER_GROWTH: u32 = 2;
 
 /// What a trial changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -30,6 +41,15 @@ pub enum Proposal {
     Splats(u32),
     /// To this SH degree.
     ShDegree(u32),
+}
+
+/// Where a search goes next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Direction {
+    /// To a trial of this.
+    Change(Proposal),
+    /// To fewer splats; how many depends on what they are worth.
+    FewerSplats,
 }
 
 /// A trial and its evidence.
@@ -62,6 +82,8 @@ pub struct Search {
     pub splats: u32,
     /// SH degree.
     pub sh_degree: u32,
+    /// Whether no splats are left that are not worth keeping.
+    pub is_thin: bool,
     /// Every trial, in order.
     pub trials: Vec<Trial>,
     /// The step at which the search ended.
@@ -72,23 +94,50 @@ impl Search {
     /// Before the first trial.
     #[must_use]
     pub fn new(splats: u32) -> Self {
-        Self { splats, sh_degree: 0, trials: Vec::new(), ended_at: None }
+        Self { splats, sh_degree: 0, is_thin: false, trials: Vec::new(), ended_at: None }
     }
 
-    /// What the next trial changes; `None` when nothing is left to try.
+    /// What the next trial changes, after `step` steps; `None` when nothing is left to try or no time
+    /// is left to try it in.
     #[must_use]
-    pub fn next_proposal(&self, config: &TrainingConfig) -> Option<Proposal> {
+    pub fn next(&self, config: &TrainingConfig, step: u32) -> Option<Direction> {
         let (settings, densification) = (config.search?, config.densification?);
-        let count = grown_count(self.splats, settings.growth, densification.max_splats);
-        let more_splats =
-            (count > self.splats && !self.is_settled(is_splats)).then_some(Proposal::Splats(count));
-        let more_bands = (self.sh_degree < config.sh_degree && !self.is_settled(|p| !is_splats(p)))
-            .then_some(Proposal::ShDegree(self.sh_degree + 1));
-        let last_was_splats = self.trials.last().is_some_and(|trial| is_splats(&trial.proposal));
-        if last_was_splats { more_bands.or(more_splats) } else { more_splats.or(more_bands) }
+        if !config.has_time_for_trials(step, 1) {
+            return None;
+        }
+        let grown = self.grown(&settings, densification.max_splats);
+        let has_time_to_grow = config.has_time_for_trials(step, 1 + TRIALS_AFTER_GROWTH);
+        if grown > self.splats && has_time_to_grow && !self.has_grown() {
+            return Some(Direction::Change(Proposal::Splats(grown)));
+        }
+        if settings.thinning && !self.is_thin {
+            return Some(Direction::FewerSplats);
+        }
+        let is_refused = self.trials.iter().any(|trial| trial.is_band() && !trial.kept);
+        let has_more_bands = self.sh_degree < config.sh_degree && !is_refused;
+        has_more_bands.then_some(Direction::Change(Proposal::ShDegree(self.sh_degree + 1)))
     }
 
-    /// What a proposal has to bring, dB: `least_gain` per doubling of the scene's numbers.
+    /// Whether growth is over: refused in its long stride and in its short one, or already followed
+    /// by something else.
+    fn has_grown(&self) -> bool {
+        let refused = self.trials.iter().rev().take_while(|trial| !trial.kept);
+        self.is_thin
+            || self.trials.iter().any(|trial| !trial.is_growth())
+            || refused.count() >= REFUSALS_OF_GROWTH
+    }
+
+    /// The number of splats that growth tries next: twice what the settings say, after that brought far
+    /// more than it had to.
+    fn grown(&self, settings: &BudgetSearch, most: u32) -> u32 {
+        let grown = |splats| grown_count(splats, settings.growth, most);
+        let is_generous = |trial: &Trial| trial.gain() >= GENEROUS * trial.required_gain;
+        let once = grown(self.splats);
+        if self.trials.last().is_some_and(is_generous) { grown(once) } else { once }
+    }
+
+    /// What a proposal has to bring, dB: `least_gain` per doubling of the scene's numbers. Negative
+    /// where they become fewer: what it may cost.
     #[must_use]
     pub fn required_gain(&self, proposal: Proposal, settings: &BudgetSearch) -> f64 {
         let (splats, degree) = match proposal {
@@ -107,18 +156,29 @@ impl Search {
                 Proposal::ShDegree(degree) => self.sh_degree = degree,
             }
         }
+        self.is_thin |= trial.is_thinning() && !trial.kept;
         self.trials.push(trial);
-    }
-
-    fn is_settled(&self, kind: impl Fn(&Proposal) -> bool) -> bool {
-        let mut of_kind = self.trials.iter().rev().filter(|trial| kind(&trial.proposal));
-        let failures = of_kind.by_ref().take_while(|trial| !trial.kept).count();
-        failures >= FAILURES
     }
 }
 
-fn is_splats(proposal: &Proposal) -> bool {
-    matches!(proposal, Proposal::Splats(_))
+impl Trial {
+    /// What the change brought, dB.
+    #[must_use]
+    pub fn gain(&self) -> f64 {
+        self.psnr_with - self.psnr_without
+    }
+
+    fn is_growth(&self) -> bool {
+        matches!(self.proposal, Proposal::Splats(splats) if splats > self.splats)
+    }
+
+    fn is_thinning(&self) -> bool {
+        matches!(self.proposal, Proposal::Splats(splats) if splats < self.splats)
+    }
+
+    fn is_band(&self) -> bool {
+        matches!(self.proposal, Proposal::ShDegree(_))
+    }
 }
 
 /// Numbers that describe a scene.
@@ -135,11 +195,10 @@ impl TrainingConfig {
         ((f64::from(self.steps) * share).round() as u32).max(1)
     }
 
-    /// Whether a trial that starts after `step` steps ends before growth has to stop.
-    #[must_use]
-    pub fn has_time_for_trial(&self, step: u32) -> bool {
+    /// Whether `count` trials one after the other, from `step` on, end before growth has to stop.
+    fn has_time_for_trials(&self, step: u32, count: u32) -> bool {
         let stop = self.densification.map_or(0, |densification| densification.stop);
-        step.saturating_add(self.trial_steps()) <= stop.min(self.steps)
+        step.saturating_add(count.saturating_mul(self.trial_steps())) <= stop.min(self.steps)
     }
 }
 
@@ -159,41 +218,63 @@ mod tests {
             sh_degree: search.sh_degree,
             proposal,
             psnr_without: 20.0,
-            psnr_with: 21.0,
+            psnr_with: if kept { 21.0 } else { 20.0 },
             required_gain: 0.1,
             kept,
         }
     }
 
-    /// Runs the search with a rule that says what pays.
-    fn run(pays: impl Fn(Proposal) -> bool) -> Search {
+    /// Runs the search with a rule that says what pays; what is worth keeping is half the splats, until
+    /// that is fewer than 6 000.
+    fn run(pays: impl Fn(&Search, Proposal) -> bool) -> Search {
         let mut search = Search::new(10_000);
-        while let Some(proposal) = search.next_proposal(&config()) {
-            search.record(trial(&search, proposal, pays(proposal)));
+        let step = config().densification.unwrap().start;
+        while let Some(direction) = search.next(&config(), step) {
+            let proposal = match direction {
+                Direction::Change(proposal) => proposal,
+                Direction::FewerSplats if search.splats / 2 >= 6_000 => {
+                    Proposal::Splats(search.splats / 2)
+                }
+                Direction::FewerSplats => {
+                    search.is_thin = true;
+                    continue;
+                }
+            };
+            let kept = pays(&search, proposal);
+            search.record(trial(&search, proposal, kept));
             assert!(search.trials.len() < 20);
         }
         search
     }
 
     #[test]
-    fn what_never_pays_is_tried_twice_each_and_changes_nothing() {
-        let search = run(|_| false);
-        assert_eq!((search.splats, search.sh_degree, search.trials.len()), (10_000, 0, 4));
+    fn what_never_pays_changes_nothing() {
+        let search = run(|_, _| false);
+        assert_eq!((search.splats, search.sh_degree, search.trials.len()), (10_000, 0, 3));
+        assert!(search.is_thin);
     }
 
     #[test]
-    fn what_always_pays_reaches_the_ceilings() {
-        let search = run(|_| true);
-        assert_eq!((search.splats, search.sh_degree), (40_000, 3));
-        assert!(search.next_proposal(&config()).is_none());
+    fn what_always_pays_grows_to_the_ceiling_is_thinned_and_gets_all_bands() {
+        let search = run(|_, _| true);
+        assert_eq!((search.splats, search.sh_degree), (10_000, 3));
+        let splats: Vec<u32> = search.trials.iter().map(|trial| trial.splats).collect();
+        // Every trial brings far more than it has to: the second stride is the square of the first.
+        assert_eq!(splats, [10_000, 14_000, 27_440, 40_000, 20_000, 10_000, 10_000, 10_000]);
     }
 
     #[test]
-    fn splats_and_bands_are_settled_one_by_one() {
-        let search = run(|p| matches!(p, Proposal::ShDegree(degree) if degree <= 2));
-        assert_eq!((search.splats, search.sh_degree), (10_000, 2));
-        let search = run(|p| matches!(p, Proposal::Splats(splats) if splats < 20_000));
-        assert_eq!((search.splats, search.sh_degree), (19_600, 0));
+    fn a_refused_stride_is_followed_by_a_shorter_one() {
+        let search = run(|search, proposal| match proposal {
+            Proposal::Splats(splats) => splats > search.splats && splats < 20_000,
+            Proposal::ShDegree(_) => false,
+        });
+        let tried: Vec<Proposal> = search.trials.iter().map(|trial| trial.proposal).collect();
+        let [first, second, third, fourth, fifth] =
+            [14_000, 27_440, 19_600, 38_416, 27_440].map(Proposal::Splats);
+        let thinned = Proposal::Splats(9_800);
+        assert_eq!(tried, [first, second, third, fourth, fifth, thinned, Proposal::ShDegree(1)]);
+        assert_eq!((search.splats, search.is_thin), (19_600, true));
     }
 
     #[test]
@@ -210,17 +291,21 @@ mod tests {
     #[test]
     fn without_a_search_or_densification_nothing_is_proposed() {
         let search = Search::new(100);
-        assert_eq!(search.next_proposal(&TrainingConfig::growing(1000, 10_000)), None);
+        assert_eq!(search.next(&TrainingConfig::growing(1000, 10_000), 100), None);
         let fixed =
             TrainingConfig { search: Some(BudgetSearch::default()), ..TrainingConfig::fixed(9) };
-        assert_eq!(search.next_proposal(&fixed), None);
+        assert_eq!(search.next(&fixed, 100), None);
     }
 
     #[test]
-    fn the_last_trial_ends_before_growth_does() {
+    fn the_last_trial_ends_before_growth_does_and_growth_leaves_time_for_two_more() {
         let config = config();
         assert_eq!(config.trial_steps(), 100);
         // Growth stops after five sixths, 1167 of 1400 steps.
-        assert!(config.has_time_for_trial(1067) && !config.has_time_for_trial(1068));
+        let search = Search::new(10_000);
+        let next = |step| search.next(&config, step);
+        assert!(matches!(next(867), Some(Direction::Change(Proposal::Splats(_)))));
+        assert_eq!((next(868), next(1067)), (Some(Direction::FewerSplats), next(868)));
+        assert_eq!(next(1068), None);
     }
 }

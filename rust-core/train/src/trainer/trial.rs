@@ -1,12 +1,15 @@
 //! Trials of a search: two branches from one state.
 
-use super::search::{Proposal, Trial};
+use super::search::{Direction, Proposal, Trial};
 use super::{Event, TrainError, Trainer};
 use crate::backend::TrainingBackend;
 use crate::checkpoint::Checkpoint;
 use crate::config::Background;
+use crate::densify::{RemovalCosts, keep, random_signs};
 use crate::evaluation::psnr_of;
 
+/// Backward passes that tell what splats are worth.
+const PROBES: u32 = 32;
 /// What 8-bit photographs cannot tell from equality, dB.
 const HIGHEST_PSNR: f64 = 100.0;
 
@@ -15,6 +18,8 @@ pub(super) struct RunningTrial {
     pub(super) proposal: Proposal,
     /// The step at which both branches end.
     pub(super) end: u32,
+    /// The splats that go on in the branch with the change, if not all.
+    kept: Option<Vec<u32>>,
     /// The end of the branch that stayed as it was; from then on the branch with the change runs.
     without: Option<Box<Branch>>,
 }
@@ -43,21 +48,36 @@ impl<B: TrainingBackend> Trainer<B> {
         if search.ended_at.is_some() || self.step == 0 || !self.step.is_multiple_of(trial_steps) {
             return Ok(());
         }
-        let proposal = search
-            .next_proposal(&self.config)
-            .filter(|_| self.config.has_time_for_trial(self.step));
+        if self.config.deformation.is_some_and(|motion| self.step < motion.undisturbed) {
+            return Ok(());
+        }
+        let mut kept = None;
+        let proposal = match search.next(&self.config, self.step) {
+            Some(Direction::Change(proposal)) => Some(proposal),
+            Some(Direction::FewerSplats) => {
+                kept = self.worth_keeping()?;
+                let Some(kept) = &kept else { return self.leave_thinned(observer) };
+                Some(Proposal::Splats(kept.len() as u32))
+            }
+            None => None,
+        };
         if proposal.is_none() {
             self.end_search(observer);
         }
         if !self.make_good(observer)? {
             return Ok(());
         }
-        self.trial = proposal.map(|proposal| RunningTrial {
-            proposal,
-            end: self.step + trial_steps,
-            without: None,
-        });
+        let end = self.step + trial_steps;
+        self.trial = proposal.map(|proposal| RunningTrial { proposal, end, kept, without: None });
         Ok(())
+    }
+
+    /// Goes on to what comes after thinning.
+    fn leave_thinned(&mut self, observer: &mut dyn FnMut(Event)) -> Result<(), TrainError> {
+        if let Some(search) = &mut self.progress.search {
+            search.is_thin = true;
+        }
+        self.begin_trial(observer)
     }
 
     fn end_search(&mut self, observer: &mut dyn FnMut(Event)) {
@@ -87,8 +107,12 @@ impl<B: TrainingBackend> Trainer<B> {
             None => {
                 let branch = Branch { checkpoint: self.capture()?, psnr };
                 trial.without = Some(Box::new(branch));
+                let mut start = self.anchor.get()?;
+                if let Some(kept) = trial.kept.take() {
+                    keep(&mut start.state, &kept);
+                }
                 self.trial = Some(trial);
-                self.enter(self.anchor.get()?)
+                self.enter(start)
             }
             Some(without) => self.decide(&trial, *without, psnr, observer),
         }
@@ -125,6 +149,24 @@ impl<B: TrainingBackend> Trainer<B> {
         }
         observer(Event::Trial(outcome));
         Ok(())
+    }
+
+    /// The splats that are worth their price, if not nearly all are.
+    fn worth_keeping(&mut self) -> Result<Option<Vec<u32>>, TrainError> {
+        let Some(settings) = self.config.search else { return Ok(None) };
+        let logits = self.backend.state()?.splats.opacity_logits;
+        let mut costs = RemovalCosts::new(logits.len());
+        let shown = self.views.shown().to_vec();
+        for (probe, &id) in (0..PROBES).zip(shown.iter().cycle()) {
+            let target = self.photographs.target(id)?;
+            let background = self.config.background_at(self.step.wrapping_add(probe));
+            let address = (self.config.seed, self.step, probe);
+            let signs = random_signs(address, target.len(), background, target.mask());
+            let view = self.views.view(id).clone();
+            let by_logits = self.backend.opacity_gradient(&view, self.sh_degree(), &signs)?;
+            costs.add(&signs, &logits, &by_logits);
+        }
+        Ok(costs.worth_keeping(self.validation_psnr()?, settings.least_gain))
     }
 
     /// Mean PSNR of the views that were set aside, dB.

@@ -80,6 +80,11 @@ impl Views {
         &self.validation
     }
 
+    /// The views that steps look at.
+    pub(super) fn shown(&self) -> &[u32] {
+        &self.shown
+    }
+
     pub(super) fn dataset_indices(&self) -> &[usize] {
         &self.dataset_indices
     }

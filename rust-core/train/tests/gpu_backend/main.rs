@@ -1,6 +1,7 @@
 //! The GPU backend as a whole, beside the CPU's.
 
 mod deformation;
+mod removal;
 mod runs;
 mod steps;
 #[path = "../support/mod.rs"]

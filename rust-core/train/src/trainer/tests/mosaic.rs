@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
 use fearless_simd::Level;
-use trapeze_scene::{Camera, Frame, FrameSettings, SH_C0};
+use trapeze_scene::{Camera, Frame, FrameSettings, SH_C0, ShDegree, sigmoid};
 
 use crate::TrainingState;
 use crate::backend::{BackendError, StepReport, TrainingBackend, TrainingView};
@@ -151,6 +151,23 @@ impl TrainingBackend for Mosaic {
 
     fn reports(&mut self, step: u32) -> Result<Vec<StepReport>, BackendError> {
         Ok(self.reports.take_up_to(step))
+    }
+
+    /// Without a splat its pixels are black.
+    fn opacity_gradient(
+        &mut self,
+        _: &TrainingView,
+        _: ShDegree,
+        by_image: &[[f32; 4]],
+    ) -> Result<Vec<f32>, BackendError> {
+        let splats = &self.state.splats;
+        let mut gradient = vec![0.0; splats.len()];
+        for (p, (pixel, by)) in self.image(by_image.len()).iter().zip(by_image).enumerate() {
+            let i = p % splats.len();
+            let transparency = sigmoid(-f64::from(splats.opacity_logits[i])) as f32;
+            gradient[i] += transparency * pixel.iter().zip(by).map(|(c, by)| c * by).sum::<f32>();
+        }
+        Ok(gradient)
     }
 
     fn render(&mut self, camera: &Camera, _: &FrameSettings) -> Result<Frame, BackendError> {

@@ -35,7 +35,12 @@ fn what_pays_is_kept_and_what_does_not_is_undone() {
         let gain = trial.psnr_with - trial.psnr_without;
         assert_eq!(trial.kept, gain >= trial.required_gain, "{trial:?}");
         match trial.proposal {
-            Proposal::Splats(splats) => assert_eq!(splats, 2 * trial.splats),
+            Proposal::Splats(splats) if splats < trial.splats => {
+                assert!(trial.required_gain < 0.0, "{trial:?}");
+            }
+            Proposal::Splats(splats) => {
+                assert!([2, 4].map(|n| n * trial.splats).contains(&splats) || splats == 400);
+            }
             // Bands show nothing in a mosaic.
             Proposal::ShDegree(degree) => assert!(degree == 1 && gain == 0.0 && !trial.kept),
         }
