@@ -3,7 +3,7 @@
 // take any others.
 //
 // Needs: common/dispatch, common/numbers, common/rotation, common/exponential, common/network,
-// common/deformed_parameters.
+// common/deformed_parameters, common/deformed_splat.
 //
 // One thread per splat: x + d; normalise(q) + d_q, which the projection normalises; ln(eˡ + d_s).
 // Ten outputs are too few for a tile of common/matrix_tile.wgsl.
@@ -19,30 +19,12 @@
 @group(0) @binding(7) var<storage, read_write> deformed_positions: array<f32>;
 @group(0) @binding(8) var<storage, read_write> deformed_log_scales: array<f32>;
 @group(0) @binding(9) var<storage, read_write> deformed_rotations: array<vec4<f32>>;
-
-/// A sum of rotations shorter than this has no direction: the rounding noise of a canonical rotation
-/// that its delta cancels.
-const MIN_ROTATION_NORM: f32 = 1e-6;
+/// Splats that the network moves, by column; those that rest follow.
+@group(0) @binding(10) var<storage, read> order: array<u32>;
 
 /// W[output] · h, for four inputs.
 fn part_of_output(output: u32, vector: u32, h: vec4<f32>) -> f32 {
     return dot(parameters[layer.weights + output * (layer.inputs / 4u) + vector], h);
-}
-
-/// ln(eˡ + d), within its limits.
-fn deformed_log_scale(log_scale: f32, d: f32) -> f32 {
-    // −∞ is a scale of 0; the other bits that are not finite are not drawn.
-    if (is_nan(log_scale) || is_nan(d)) {
-        return bitcast<f32>(0x7fc00000u);
-    }
-    let scale = exponential(log_scale) + d;
-    if (!(scale > MIN_DEFORMED_SCALE)) {
-        return LOWEST_LOG_SCALE;
-    }
-    if (scale >= MAX_SCALE) {
-        return HIGHEST_LOG_SCALE;
-    }
-    return natural_log(scale);
 }
 
 @compute @workgroup_size(64)
@@ -82,15 +64,13 @@ fn deform_apply(
         );
         third += vec2<f32>(part_of_output(8u, vector, h), part_of_output(9u, vector, h));
     }
-    let splat = chunk.first + column;
+    let splat = order[chunk.first + column];
     let at = 3u * splat;
     deformed_positions[at] = positions[at] + first.x;
     deformed_positions[at + 1u] = positions[at + 1u] + first.y;
     deformed_positions[at + 2u] = positions[at + 2u] + first.z;
-    let rotation = unit_rotation(rotations[splat]).rotation + vec4<f32>(first.w, second.xyz);
-    let has_direction = unit_rotation(rotation).length >= MIN_ROTATION_NORM;
-    // Nothing is the identity, without a gradient.
-    deformed_rotations[splat] = select(vec4<f32>(0.0), rotation, has_direction);
+    let d_rotation = vec4<f32>(first.w, second.xyz);
+    deformed_rotations[splat] = deformed_rotation(rotations[splat], d_rotation);
     deformed_log_scales[at] = deformed_log_scale(log_scales[at], second.w);
     deformed_log_scales[at + 1u] = deformed_log_scale(log_scales[at + 1u], third.x);
     deformed_log_scales[at + 2u] = deformed_log_scale(log_scales[at + 2u], third.y);

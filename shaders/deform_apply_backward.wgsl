@@ -2,7 +2,7 @@
 // gradients by the canonical ones, in place, and by the network's outputs.
 //
 // Needs: common/dispatch, common/numbers, common/rotation, common/exponential, common/network,
-// common/deformed_parameters.
+// common/deformed_parameters, common/deformed_splat.
 //
 // One thread per column. Positions and displacements are added: their gradients are one. The way
 // through γ is not followed (Deformable 3D Gaussians stops the gradient there).
@@ -17,14 +17,7 @@
 @group(0) @binding(6) var<storage, read_write> by_log_scales: array<f32>;
 @group(0) @binding(7) var<storage, read_write> by_rotations: array<vec4<f32>>;
 @group(0) @binding(8) var<storage, read_write> activations: array<f32>;
-
-/// ∂L/∂(eˡ + d) from ∂L/∂ln(eˡ + d); zero at the limits.
-fn by_scale(gradient: f32, deformed: f32) -> f32 {
-    if (!(deformed > LOWEST_LOG_SCALE && deformed < HIGHEST_LOG_SCALE)) {
-        return 0.0;
-    }
-    return gradient * exponential(-deformed);
-}
+@group(0) @binding(9) var<storage, read> order: array<u32>;
 
 fn store_output(output: u32, column: u32, gradient: f32) {
     activations[(layer.output_row + output) * 4u * layer.row_vectors + column] = gradient;
@@ -46,7 +39,7 @@ fn deform_apply_backward(
         }
         return;
     }
-    let splat = chunk.first + column;
+    let splat = order[chunk.first + column];
     let by_rotation = by_rotations[splat];
     for (var c = 0u; c < 3u; c++) {
         let at = 3u * splat + c;

@@ -8,6 +8,8 @@
 @group(0) @binding(0) var<uniform> chunk: NetworkChunk;
 @group(0) @binding(1) var<storage, read> positions: array<f32>;
 @group(0) @binding(2) var<storage, read_write> activations: array<f32>;
+/// Splats that the network moves, by column.
+@group(0) @binding(3) var<storage, read> order: array<u32>;
 
 fn store_feature(feature: u32, column: u32, value: f32) {
     activations[(chunk.encoding_row + feature) * 4u * chunk.row_vectors + column] = value;
@@ -26,7 +28,7 @@ fn deform_encode(
     var position = vec3<f32>(0.0);
     var is_known = false;
     if (column < chunk.splats) {
-        let at = 3u * (chunk.first + column);
+        let at = 3u * order[chunk.first + column];
         position = vec3<f32>(positions[at], positions[at + 1u], positions[at + 2u]);
         is_known = is_finite(position.x) && is_finite(position.y) && is_finite(position.z);
     }

@@ -15,6 +15,7 @@ struct _mslBufferSizes {
     uint size7;
     uint size8;
     uint size9;
+    uint size10;
 };
 
 struct UnitRotation {
@@ -48,6 +49,7 @@ struct NetworkLayer {
 };
 typedef metal::float4 type_7[1];
 typedef float type_8[1];
+typedef uint type_9[1];
 constant uint MAX_GROUPS_PER_ROW = 65535u;
 constant float MIN_TRAINED_ROTATION_LENGTH = 0.000000000001;
 constant float LOG2_E = 1.442695;
@@ -244,20 +246,6 @@ uint sum_parts(
     return metal::clamp(naga_div(steps, 4u), 1u, most_parts);
 }
 
-float part_of_output(
-    uint output,
-    uint vector_1,
-    metal::float4 h,
-    constant NetworkLayer& layer,
-    device type_7 const& parameters,
-    constant _mslBufferSizes& _buffer_sizes
-) {
-    uint _e6 = layer.weights;
-    uint _e9 = layer.inputs;
-    metal::float4 _e16 = parameters[(_e6 + (output * naga_div(_e9, 4u))) + vector_1];
-    return metal::dot(_e16, h);
-}
-
 float deformed_log_scale(
     float log_scale,
     float d
@@ -286,6 +274,48 @@ float deformed_log_scale(
     return _e20;
 }
 
+metal::float4 deformed_rotation(
+    metal::float4 rotation,
+    metal::float4 d_1
+) {
+    UnitRotation _e2 = unit_rotation(rotation);
+    metal::float4 sum = _e2.rotation + d_1;
+    UnitRotation _e7 = unit_rotation(sum);
+    return (_e7.length >= MIN_ROTATION_NORM) ? sum : metal::float4(0.0);
+}
+
+float by_scale(
+    float gradient,
+    float deformed
+) {
+    bool local_5 = {};
+    if (deformed > LOWEST_LOG_SCALE) {
+        local_5 = deformed < HIGHEST_LOG_SCALE;
+    } else {
+        local_5 = false;
+    }
+    bool _e9 = local_5;
+    if (!(_e9)) {
+        return 0.0;
+    }
+    float _e13 = exponential(-(deformed));
+    return gradient * _e13;
+}
+
+float part_of_output(
+    uint output,
+    uint vector_1,
+    metal::float4 h,
+    constant NetworkLayer& layer,
+    device type_7 const& parameters,
+    constant _mslBufferSizes& _buffer_sizes
+) {
+    uint _e6 = layer.weights;
+    uint _e9 = layer.inputs;
+    metal::float4 _e16 = parameters[(_e6 + (output * naga_div(_e9, 4u))) + vector_1];
+    return metal::dot(_e16, h);
+}
+
 struct deform_applyInput {
 };
 [[max_total_threads_per_threadgroup(64)]] kernel void deform_apply(
@@ -302,6 +332,7 @@ struct deform_applyInput {
 , device type_8& deformed_positions [[user(fake0)]]
 , device type_8& deformed_log_scales [[user(fake0)]]
 , device type_7& deformed_rotations [[user(fake0)]]
+, device type_9 const& order [[user(fake0)]]
 , constant _mslBufferSizes& _buffer_sizes [[user(fake0)]]
 ) {
     metal::float4 first = {};
@@ -376,37 +407,35 @@ struct deform_applyInput {
             third = _e114 + metal::float2(_e117, _e120);
         }
     }
-    uint _e128 = chunk.first;
-    uint splat = _e128 + column;
+    uint _e129 = chunk.first;
+    uint splat = order[_e129 + column];
     uint at_1 = 3u * splat;
-    float _e136 = positions[at_1];
-    float _e138 = first.x;
-    deformed_positions[at_1] = _e136 + _e138;
-    float _e148 = positions[at_1 + 1u];
-    float _e150 = first.y;
-    deformed_positions[at_1 + 1u] = _e148 + _e150;
-    float _e160 = positions[at_1 + 2u];
-    float _e162 = first.z;
-    deformed_positions[at_1 + 2u] = _e160 + _e162;
-    metal::float4 _e166 = rotations[splat];
-    UnitRotation _e167 = unit_rotation(_e166);
-    float _e170 = first.w;
-    metal::float4 _e171 = second;
-    metal::float4 rotation = _e167.rotation + metal::float4(_e170, _e171.xyz);
-    UnitRotation _e175 = unit_rotation(rotation);
-    bool has_direction = _e175.length >= MIN_ROTATION_NORM;
-    deformed_rotations[splat] = has_direction ? rotation : metal::float4(0.0);
-    float _e188 = log_scales[at_1];
-    float _e190 = second.w;
-    float _e191 = deformed_log_scale(_e188, _e190);
-    deformed_log_scales[at_1] = _e191;
-    float _e200 = log_scales[at_1 + 1u];
-    float _e202 = third.x;
-    float _e203 = deformed_log_scale(_e200, _e202);
-    deformed_log_scales[at_1 + 1u] = _e203;
-    float _e212 = log_scales[at_1 + 2u];
-    float _e214 = third.y;
-    float _e215 = deformed_log_scale(_e212, _e214);
-    deformed_log_scales[at_1 + 2u] = _e215;
+    float _e139 = positions[at_1];
+    float _e141 = first.x;
+    deformed_positions[at_1] = _e139 + _e141;
+    float _e151 = positions[at_1 + 1u];
+    float _e153 = first.y;
+    deformed_positions[at_1 + 1u] = _e151 + _e153;
+    float _e163 = positions[at_1 + 2u];
+    float _e165 = first.z;
+    deformed_positions[at_1 + 2u] = _e163 + _e165;
+    float _e168 = first.w;
+    metal::float4 _e169 = second;
+    metal::float4 d_rotation = metal::float4(_e168, _e169.xyz);
+    metal::float4 _e176 = rotations[splat];
+    metal::float4 _e177 = deformed_rotation(_e176, d_rotation);
+    deformed_rotations[splat] = _e177;
+    float _e182 = log_scales[at_1];
+    float _e184 = second.w;
+    float _e185 = deformed_log_scale(_e182, _e184);
+    deformed_log_scales[at_1] = _e185;
+    float _e194 = log_scales[at_1 + 1u];
+    float _e196 = third.x;
+    float _e197 = deformed_log_scale(_e194, _e196);
+    deformed_log_scales[at_1 + 1u] = _e197;
+    float _e206 = log_scales[at_1 + 2u];
+    float _e208 = third.y;
+    float _e209 = deformed_log_scale(_e206, _e208);
+    deformed_log_scales[at_1 + 2u] = _e209;
     return;
 }

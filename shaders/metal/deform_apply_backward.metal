@@ -14,6 +14,7 @@ struct _mslBufferSizes {
     uint size6;
     uint size7;
     uint size8;
+    uint size9;
 };
 
 struct UnitRotation {
@@ -47,6 +48,7 @@ struct NetworkLayer {
 };
 typedef float type_7[1];
 typedef metal::float4 type_8[1];
+typedef uint type_9[1];
 constant uint MAX_GROUPS_PER_ROW = 65535u;
 constant float MIN_TRAINED_ROTATION_LENGTH = 0.000000000001;
 constant float LOG2_E = 1.442695;
@@ -57,6 +59,7 @@ constant float MIN_DEFORMED_SCALE = 0.000001;
 constant float MAX_SCALE = 1000000000000.0;
 constant float LOWEST_LOG_SCALE = -13.815511;
 constant float HIGHEST_LOG_SCALE = 27.631021;
+constant float MIN_ROTATION_NORM = 0.000001;
 
 uint flat_group(
     metal::uint3 group_1,
@@ -242,17 +245,55 @@ uint sum_parts(
     return metal::clamp(naga_div(steps, 4u), 1u, most_parts);
 }
 
+float deformed_log_scale(
+    float log_scale,
+    float d
+) {
+    bool local_4 = {};
+    bool _e2 = is_nan(log_scale);
+    if (!(_e2)) {
+        bool _e6 = is_nan(d);
+        local_4 = _e6;
+    } else {
+        local_4 = true;
+    }
+    bool _e8 = local_4;
+    if (_e8) {
+        return as_type<float>(2143289344u);
+    }
+    float _e11 = exponential(log_scale);
+    float scale = _e11 + d;
+    if (!((scale > MIN_DEFORMED_SCALE))) {
+        return LOWEST_LOG_SCALE;
+    }
+    if (scale >= MAX_SCALE) {
+        return HIGHEST_LOG_SCALE;
+    }
+    float _e20 = natural_log(scale);
+    return _e20;
+}
+
+metal::float4 deformed_rotation(
+    metal::float4 rotation,
+    metal::float4 d_1
+) {
+    UnitRotation _e2 = unit_rotation(rotation);
+    metal::float4 sum = _e2.rotation + d_1;
+    UnitRotation _e7 = unit_rotation(sum);
+    return (_e7.length >= MIN_ROTATION_NORM) ? sum : metal::float4(0.0);
+}
+
 float by_scale(
     float gradient,
     float deformed
 ) {
-    bool local_4 = {};
+    bool local_5 = {};
     if (deformed > LOWEST_LOG_SCALE) {
-        local_4 = deformed < HIGHEST_LOG_SCALE;
+        local_5 = deformed < HIGHEST_LOG_SCALE;
     } else {
-        local_4 = false;
+        local_5 = false;
     }
-    bool _e9 = local_4;
+    bool _e9 = local_5;
     if (!(_e9)) {
         return 0.0;
     }
@@ -289,6 +330,7 @@ struct deform_apply_backwardInput {
 , device type_7& by_log_scales [[user(fake0)]]
 , device type_8& by_rotations [[user(fake0)]]
 , device type_7& activations [[user(fake0)]]
+, device type_9 const& order [[user(fake0)]]
 , constant _mslBufferSizes& _buffer_sizes [[user(fake0)]]
 ) {
     uint output = 0u;
@@ -323,76 +365,76 @@ struct deform_apply_backwardInput {
         }
         return;
     }
-    uint _e31 = chunk.first;
-    uint splat = _e31 + column_1;
+    uint _e32 = chunk.first;
+    uint splat = order[_e32 + column_1];
     metal::float4 by_rotation = by_rotations[splat];
     bool loop_init_1 = true;
     while(true) {
         if (!loop_init_1) {
-            uint _e67 = c;
-            c = _e67 + 1u;
+            uint _e70 = c;
+            c = _e70 + 1u;
         }
         loop_init_1 = false;
-        uint _e38 = c;
-        if (_e38 < 3u) {
+        uint _e41 = c;
+        if (_e41 < 3u) {
         } else {
             break;
         }
         {
-            uint _e43 = c;
-            uint at = (3u * splat) + _e43;
-            uint _e45 = c;
-            float _e48 = by_positions[at];
-            store_output(_e45, column_1, _e48, layer, activations, _buffer_sizes);
-            float _e51 = by_log_scales[at];
-            float _e54 = deformed_log_scales[at];
-            float _e55 = by_scale(_e51, _e54);
-            uint _e57 = c;
-            store_output(7u + _e57, column_1, _e55, layer, activations, _buffer_sizes);
-            float _e63 = log_scales[at];
-            float _e64 = exponential(_e63);
-            by_log_scales[at] = _e55 * _e64;
+            uint _e46 = c;
+            uint at = (3u * splat) + _e46;
+            uint _e48 = c;
+            float _e51 = by_positions[at];
+            store_output(_e48, column_1, _e51, layer, activations, _buffer_sizes);
+            float _e54 = by_log_scales[at];
+            float _e57 = deformed_log_scales[at];
+            float _e58 = by_scale(_e54, _e57);
+            uint _e60 = c;
+            store_output(7u + _e60, column_1, _e58, layer, activations, _buffer_sizes);
+            float _e66 = log_scales[at];
+            float _e67 = exponential(_e66);
+            by_log_scales[at] = _e58 * _e67;
         }
     }
     bool loop_init_2 = true;
     while(true) {
         if (!loop_init_2) {
-            uint _e80 = c_1;
-            c_1 = _e80 + 1u;
+            uint _e83 = c_1;
+            c_1 = _e83 + 1u;
         }
         loop_init_2 = false;
-        uint _e71 = c_1;
-        if (_e71 < 4u) {
+        uint _e74 = c_1;
+        if (_e74 < 4u) {
         } else {
             break;
         }
         {
-            uint _e75 = c_1;
-            uint _e77 = c_1;
-            store_output(3u + _e75, column_1, by_rotation[_e77], layer, activations, _buffer_sizes);
+            uint _e78 = c_1;
+            uint _e80 = c_1;
+            store_output(3u + _e78, column_1, by_rotation[_e80], layer, activations, _buffer_sizes);
         }
     }
     bool loop_init_3 = true;
     while(true) {
         if (!loop_init_3) {
-            uint _e92 = output_1;
-            output_1 = _e92 + 1u;
+            uint _e95 = output_1;
+            output_1 = _e95 + 1u;
         }
         loop_init_3 = false;
-        uint _e84 = output_1;
-        uint _e87 = layer.outputs;
-        if (_e84 < _e87) {
+        uint _e87 = output_1;
+        uint _e90 = layer.outputs;
+        if (_e87 < _e90) {
         } else {
             break;
         }
         {
-            uint _e89 = output_1;
-            store_output(_e89, column_1, 0.0, layer, activations, _buffer_sizes);
+            uint _e92 = output_1;
+            store_output(_e92, column_1, 0.0, layer, activations, _buffer_sizes);
         }
     }
-    metal::float4 _e98 = rotations[splat];
-    UnitRotation _e99 = unit_rotation(_e98);
-    metal::float4 _e100 = unit_backward(_e99, by_rotation);
-    by_rotations[splat] = _e100;
+    metal::float4 _e101 = rotations[splat];
+    UnitRotation _e102 = unit_rotation(_e101);
+    metal::float4 _e103 = unit_backward(_e102, by_rotation);
+    by_rotations[splat] = _e103;
     return;
 }

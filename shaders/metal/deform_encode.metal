@@ -9,6 +9,7 @@ using metal::uint;
 struct _mslBufferSizes {
     uint size1;
     uint size2;
+    uint size3;
 };
 
 struct type_6 {
@@ -36,6 +37,7 @@ struct NetworkLayer {
     uint most_parts;
 };
 typedef float type_7[1];
+typedef uint type_8[1];
 constant uint MAX_GROUPS_PER_ROW = 65535u;
 constant float TAU = 6.2831855;
 constant float INVERSE_TAU_1_ = 0.15911865;
@@ -206,6 +208,7 @@ struct deform_encodeInput {
 , constant NetworkChunk& chunk [[user(fake0)]]
 , device type_7 const& positions [[user(fake0)]]
 , device type_7& activations [[user(fake0)]]
+, device type_8 const& order [[user(fake0)]]
 , constant _mslBufferSizes& _buffer_sizes [[user(fake0)]]
 ) {
     metal::float3 position = metal::float3(0.0);
@@ -223,102 +226,103 @@ struct deform_encodeInput {
     }
     uint _e20 = chunk.splats;
     if (column_1 < _e20) {
-        uint _e25 = chunk.first;
-        uint at = 3u * (_e25 + column_1);
-        float _e30 = positions[at];
-        float _e35 = positions[at + 1u];
-        float _e40 = positions[at + 2u];
-        position = metal::float3(_e30, _e35, _e40);
-        float _e43 = position.x;
-        bool _e44 = is_finite(_e43);
-        if (_e44) {
-            float _e48 = position.y;
-            bool _e49 = is_finite(_e48);
-            local = _e49;
+        uint _e26 = chunk.first;
+        uint _e29 = order[_e26 + column_1];
+        uint at = 3u * _e29;
+        float _e33 = positions[at];
+        float _e38 = positions[at + 1u];
+        float _e43 = positions[at + 2u];
+        position = metal::float3(_e33, _e38, _e43);
+        float _e46 = position.x;
+        bool _e47 = is_finite(_e46);
+        if (_e47) {
+            float _e51 = position.y;
+            bool _e52 = is_finite(_e51);
+            local = _e52;
         } else {
             local = false;
         }
-        bool _e51 = local;
-        if (_e51) {
-            float _e55 = position.z;
-            bool _e56 = is_finite(_e55);
-            local_1 = _e56;
+        bool _e54 = local;
+        if (_e54) {
+            float _e58 = position.z;
+            bool _e59 = is_finite(_e58);
+            local_1 = _e59;
         } else {
             local_1 = false;
         }
-        bool _e58 = local_1;
-        is_known = _e58;
+        bool _e61 = local_1;
+        is_known = _e61;
     }
-    bool _e59 = is_known;
-    float present = _e59 ? 1.0 : 0.0;
+    bool _e62 = is_known;
+    float present = _e62 ? 1.0 : 0.0;
     bool loop_init = true;
     while(true) {
         if (!loop_init) {
-            uint _e111 = axis;
-            axis = _e111 + 1u;
+            uint _e114 = axis;
+            axis = _e114 + 1u;
         }
         loop_init = false;
-        uint _e65 = axis;
-        if (_e65 < 3u) {
+        uint _e68 = axis;
+        if (_e68 < 3u) {
         } else {
             break;
         }
         {
-            uint _e68 = axis;
-            float _e70 = position[_e68];
-            bool _e71 = is_known;
-            float coordinate = _e71 ? _e70 : 0.0;
-            uint _e74 = axis;
-            store_feature(_e74, column_1, coordinate, chunk, activations, _buffer_sizes);
-            metal::float4 _e75 = turns_of(coordinate);
+            uint _e71 = axis;
+            float _e73 = position[_e71];
+            bool _e74 = is_known;
+            float coordinate = _e74 ? _e73 : 0.0;
+            uint _e77 = axis;
+            store_feature(_e77, column_1, coordinate, chunk, activations, _buffer_sizes);
+            metal::float4 _e78 = turns_of(coordinate);
             octave = 0u;
             bool loop_init_1 = true;
             while(true) {
                 if (!loop_init_1) {
-                    uint _e108 = octave;
-                    octave = _e108 + 1u;
+                    uint _e111 = octave;
+                    octave = _e111 + 1u;
                 }
                 loop_init_1 = false;
-                uint _e78 = octave;
-                uint _e81 = chunk.octaves;
-                if (_e78 < _e81) {
+                uint _e81 = octave;
+                uint _e84 = chunk.octaves;
+                if (_e81 < _e84) {
                 } else {
                     break;
                 }
                 {
-                    uint _e84 = octave;
-                    metal::float2 _e88 = sin_cos_of_turns(_e75, static_cast<float>(1u << _e84), 0.0);
-                    uint _e91 = octave;
-                    uint _e94 = axis;
-                    store_feature((3u + (6u * _e91)) + _e94, column_1, present * _e88.x, chunk, activations, _buffer_sizes);
-                    uint _e100 = octave;
-                    uint _e103 = axis;
-                    store_feature((6u + (6u * _e100)) + _e103, column_1, present * _e88.y, chunk, activations, _buffer_sizes);
+                    uint _e87 = octave;
+                    metal::float2 _e91 = sin_cos_of_turns(_e78, static_cast<float>(1u << _e87), 0.0);
+                    uint _e94 = octave;
+                    uint _e97 = axis;
+                    store_feature((3u + (6u * _e94)) + _e97, column_1, present * _e91.x, chunk, activations, _buffer_sizes);
+                    uint _e103 = octave;
+                    uint _e106 = axis;
+                    store_feature((6u + (6u * _e103)) + _e106, column_1, present * _e91.y, chunk, activations, _buffer_sizes);
                 }
             }
         }
     }
-    uint _e117 = chunk.octaves;
-    uint after = 3u + (6u * _e117);
+    uint _e120 = chunk.octaves;
+    uint after = 3u + (6u * _e120);
     bool loop_init_2 = true;
     while(true) {
         if (!loop_init_2) {
-            uint _e142 = feature;
-            feature = _e142 + 1u;
+            uint _e145 = feature;
+            feature = _e145 + 1u;
         }
         loop_init_2 = false;
-        uint _e122 = feature;
-        uint _e125 = chunk.time_features;
-        if (_e122 < _e125) {
+        uint _e125 = feature;
+        uint _e128 = chunk.time_features;
+        if (_e125 < _e128) {
         } else {
             break;
         }
         {
-            uint _e127 = feature;
-            uint _e131 = feature;
-            uint _e135 = feature;
-            float _e139 = chunk.time.inner[naga_div(_e131, 4u)][naga_mod(_e135, 4u)];
-            store_feature(after + _e127, column_1, present * _e139, chunk, activations, _buffer_sizes);
+            uint _e130 = feature;
+            uint _e134 = feature;
+            uint _e138 = feature;
+            float _e142 = chunk.time.inner[naga_div(_e134, 4u)][naga_mod(_e138, 4u)];
+            store_feature(after + _e130, column_1, present * _e142, chunk, activations, _buffer_sizes);
         }
     }
     return;

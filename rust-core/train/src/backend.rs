@@ -40,11 +40,14 @@
 
 use std::sync::Arc;
 
+use fearless_simd::Level;
 use thiserror::Error;
-use trapeze_scene::{Camera, Frame, FrameSettings, ShDegree};
+use trapeze_scene::deformation::RestingSplats;
+use trapeze_scene::{Camera, Frame, FrameSettings, Scene, ShDegree};
 
 use crate::TrainingState;
 use crate::loss::{LossValue, TargetImage};
+use crate::rest::{Look, look_at};
 use crate::schedule::{DensifyPlan, StepPlan};
 
 /// Steps between a measurement and the decisions that may use it. Enough for a GPU to run ahead
@@ -172,8 +175,8 @@ pub trait TrainingBackend {
     /// [`BackendError::MissingTarget`] when the photograph has to be admitted first.
     fn step(&mut self, plan: &StepPlan, view: &TrainingView) -> Result<(), BackendError>;
 
-    /// Changes the set of splats: the dead move, then the set grows to the plan's count. Need not
-    /// wait.
+    /// Changes the set of splats: the dead move, then the set grows to the plan's count; all move with
+    /// the network again. Need not wait, but for splats that rest.
     ///
     /// # Errors
     /// [`BackendError`] when the device fails.
@@ -188,6 +191,29 @@ pub trait TrainingBackend {
     /// # Errors
     /// [`BackendError`] when the device fails.
     fn reports(&mut self, step: u32) -> Result<Vec<StepReport>, BackendError>;
+
+    /// The geometry of all resident splats at some times, as the network deforms it; none rests until
+    /// the next [`rest`](Self::rest). Waits. The default evaluates the network on the processor.
+    ///
+    /// # Errors
+    /// [`BackendError`] when the device fails.
+    fn look(&mut self, times: &[f32]) -> Result<Look, BackendError> {
+        let state = self.state()?;
+        let deformation = state.network.map(|trained| trained.network);
+        let scene = Scene { deformation, ..Scene::from_splats(state.splats) };
+        Ok(look_at(&scene, Level::new(), times))
+    }
+
+    /// From the next step on, the network is evaluated for the splats that move only; the others keep
+    /// the outputs that they hold. A change of the set ends it, and so does `None`. The default goes
+    /// on evaluating it for all.
+    ///
+    /// # Errors
+    /// [`BackendError`] when these are not the resident splats, or the device fails.
+    fn rest(&mut self, resting: Option<RestingSplats>) -> Result<(), BackendError> {
+        let _ = resting;
+        Ok(())
+    }
 
     /// ∂L/∂(opacity logit) of every resident splat, for ∂L/∂(r, g, b premultiplied over black, alpha)
     /// of every pixel of a view, drawn with SH bands up to `sh_degree`. Waits.

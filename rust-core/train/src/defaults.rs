@@ -30,6 +30,8 @@ const NOISY_SHARE: f64 = 0.5;
 /// Share of a run before anything but the photographs acts on the splats of a scene that moves, and
 /// before the first of them moves to another's place.
 const UNDISTURBED_SHARE: f64 = 3.0 / 20.0;
+/// Share of a run before splats that do not move leave the network: by then it knows what moves.
+const REST_SHARE: f64 = 0.5;
 /// Random splats that a scene that moves begins with, at most.
 const RANDOM_SPLATS_IN_MOTION: u32 = 15_000;
 /// Noise of the time at its first step, by the time between two photographs.
@@ -57,6 +59,7 @@ pub fn deformation_for_training(
         warm_up: share_of_run(WARM_UP_SHARE, default.warm_up),
         time_noise: if is_captured { (NOISE_OF_INTERVAL * interval).min(1.0) } else { 0.0 },
         noisy_steps: share_of_run(NOISY_SHARE, default.noisy_steps).max(1),
+        rest_from: share_of_run(REST_SHARE, steps),
         undisturbed: share_of_run(UNDISTURBED_SHARE, default.undisturbed),
         ..default
     }))

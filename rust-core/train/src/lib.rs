@@ -38,6 +38,7 @@ mod parameters;
 pub mod random;
 mod reference_backend;
 mod report_queue;
+pub mod rest;
 pub mod schedule;
 mod state;
 pub mod trainer;

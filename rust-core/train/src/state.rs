@@ -1,5 +1,6 @@
 //! Everything that training changes: what a checkpoint holds and a backend keeps resident.
 
+use trapeze_scene::deformation::RestingSplats;
 use trapeze_scene::{SceneError, ShDegree, Splats};
 
 use crate::TrainedNetwork;
@@ -18,6 +19,8 @@ pub struct TrainingState {
     pub second_moments: Splats,
     /// What moves the splats in time; `None` in a static scene.
     pub network: Option<TrainedNetwork>,
+    /// Which splats the network moves; `None` is all of them. See [`crate::rest`].
+    pub resting: Option<RestingSplats>,
 }
 
 impl TrainingState {
@@ -25,7 +28,14 @@ impl TrainingState {
     #[must_use]
     pub fn new(splats: Splats) -> Self {
         let zeros = zeros_like(&splats);
-        Self { step: 0, splats, first_moments: zeros.clone(), second_moments: zeros, network: None }
+        Self {
+            step: 0,
+            splats,
+            first_moments: zeros.clone(),
+            second_moments: zeros,
+            network: None,
+            resting: None,
+        }
     }
 
     /// Adds the SH bands up to `degree`, zero and at rest. A lower degree changes nothing.
@@ -53,6 +63,12 @@ impl TrainingState {
             if found != expected {
                 return Err(SceneError::Length { field: "moments of sh_rest", expected, found });
             }
+        }
+        if let Some(resting) = &self.resting
+            && resting.splats() != self.splats.len()
+        {
+            let (expected, found) = (self.splats.len(), resting.splats());
+            return Err(SceneError::Length { field: "resting splats", expected, found });
         }
         let Some(trained) = &self.network else { return Ok(()) };
         let expected = trained.network.parameter_count();

@@ -89,6 +89,14 @@ impl Deformed {
         }
     }
 
+    /// Sets the pose of splat `i`, which is there.
+    pub(crate) fn set(&mut self, i: usize, pose: &SplatPose) {
+        self.positions[i] = pose.position;
+        self.rotations[i] = pose.rotation;
+        self.rotation_lengths[i] = pose.rotation_length;
+        self.scales[i] = pose.scale;
+    }
+
     /// The pose of splat `i`.
     ///
     /// # Panics

@@ -2,7 +2,7 @@
 
 use fearless_simd::{Level, Simd, dispatch};
 use rayon::prelude::*;
-use trapeze_scene::deformation::PositionHead;
+use trapeze_scene::deformation::{PositionHead, RestingSplats};
 use trapeze_scene::{DeformationNetwork, Scene};
 
 use super::apply::{HeadMeaning, apply_outputs};
@@ -134,6 +134,26 @@ impl DeformationStage {
             None => None,
         };
         self.show(Shown { time, dynamic_ranks })
+    }
+
+    /// Poses the splats that move at `time`; the others get what they hold, and the network is not
+    /// evaluated for them. Time NaN or infinite is taken as 0.
+    ///
+    /// # Panics
+    /// When `resting` is of other splats.
+    pub fn evaluate_beside(&mut self, time: f32, resting: &RestingSplats) -> &Deformed {
+        let Some(moving) = &mut self.moving else { return &self.deformed };
+        self.shown = None;
+        for (i, held) in resting.resting().zip(resting.held()) {
+            let mut outputs = [0.0; MAX_HEAD_OUTPUTS];
+            outputs[..held.len()].copy_from_slice(held);
+            let canonical = moving.canonical.pose(i as usize);
+            let pose = apply_outputs(&canonical, &outputs, &moving.meaning);
+            self.deformed.set(i as usize, &pose);
+        }
+        let ranks = moving.ranks_of(resting.moving());
+        moving.evaluate(time, ranks.as_deref(), &mut self.deformed);
+        &self.deformed
     }
 
     /// Nothing is computed that `deformed` holds already: the same frame again, or the static

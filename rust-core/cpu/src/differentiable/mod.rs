@@ -20,20 +20,19 @@
 //! the weights of the network, in the order of `weights.bin`: a loss on the frame at any time trains
 //! splats and network together.
 
+mod network;
 mod splats;
 
 use std::time::{Duration, Instant};
 
 use fearless_simd::dispatch;
 use rayon::prelude::*;
-use trapeze_scene::{
-    Camera, ColorSource, DeformationNetwork, Frame, FrameSettings, Scene, SceneError, Splats,
-    is_dynamic,
-};
+use trapeze_scene::deformation::RestingSplats;
+use trapeze_scene::{Camera, ColorSource, Frame, FrameSettings, Scene, SceneError, Splats};
 
 use crate::bin::BandLists;
 use crate::deform::{DeformationOptions, DeformationStage, Deformed};
-use crate::deform_backward::{MovedSplats, OutputGradient, PoseRule, network_backward};
+use crate::deform_backward::{OutputGradient, PoseRule};
 use crate::gradient::{ImageGradient, PoseGradients, gradient_chunks, reset_like};
 use crate::project::{ProjectedSplat, ProjectedSplats, ProjectionStage, project};
 use crate::project_backward::BackwardView;
@@ -60,6 +59,7 @@ pub struct DifferentiableRenderer {
     frame: Frame,
     memory: BackwardMemory,
     by_outputs: Vec<OutputGradient>,
+    resting: Option<RestingSplats>,
     last: Option<LastFrame>,
     times: PassTimes,
 }
@@ -102,9 +102,24 @@ impl DifferentiableRenderer {
             frame: Frame::default(),
             memory: BackwardMemory::default(),
             by_outputs: Vec::new(),
+            resting: None,
             last: None,
             times: PassTimes::default(),
         }
+    }
+
+    /// From the next forward pass on, the network is evaluated for the splats that move, at the time of
+    /// the frame; the others get what they hold, and no gradient goes from them to the network. `None`
+    /// moves all. A masked frame ([`FrameSettings::static_threshold`]) is not affected.
+    pub fn set_resting(&mut self, resting: Option<RestingSplats>) {
+        self.resting = resting;
+        self.last = None;
+    }
+
+    /// The splats that rest, if any.
+    #[must_use]
+    pub fn resting(&self) -> Option<&RestingSplats> {
+        self.resting.as_ref()
     }
 
     /// The frame of the last forward pass.
@@ -140,6 +155,12 @@ impl DifferentiableRenderer {
         self.last = None;
         camera.validate()?;
         scene.splats.validate()?;
+        if let Some(resting) = &self.resting
+            && resting.splats() != scene.len()
+        {
+            let (expected, found) = (scene.len(), resting.splats());
+            return Err(SceneError::Length { field: "resting splats", expected, found });
+        }
         let relative = camera.relative_to(scene.origin);
         let mut clock = Clock::start();
         let pose_rule = self.pose(scene, settings);
@@ -202,7 +223,7 @@ impl DifferentiableRenderer {
     }
 
     /// [`backward`](Self::backward), which goes on through the deformation network: `by_network` gets
-    /// ∂L/∂(its weights and biases), layer by layer in the order of [`DeformationNetwork::layers`],
+    /// ∂L/∂(its weights and biases), layer by layer in the order of [`DeformationNetwork::layers`](trapeze_scene::DeformationNetwork::layers),
     /// the weight (row-major, outputs × inputs) before the bias. Without a network it gets nothing.
     ///
     /// The positions that enter the network are taken as constant, as in training (Deformable 3D
@@ -291,38 +312,6 @@ impl DifferentiableRenderer {
         Ok(())
     }
 
-    /// From the gradients by the network's outputs to those by its weights: splats of one time
-    /// together, those that a masked frame holds at t = 0 apart.
-    fn carry_to_network(
-        &self,
-        scene: &Scene,
-        network: &DeformationNetwork,
-        by_network: &mut [f32],
-    ) {
-        let Some(last) = &self.last else { return };
-        let is_held = |i: usize| match (&scene.motion, last.static_threshold) {
-            (Some(motion), Some(threshold)) => !is_dynamic(motion.values[i], threshold),
-            _ => false,
-        };
-        let mut now = MovedSplats::default();
-        let mut at_rest = MovedSplats::default();
-        for (i, by_output) in self.by_outputs.iter().enumerate() {
-            if *by_output == OutputGradient::default() {
-                continue;
-            }
-            let splats = if is_held(i) { &mut at_rest } else { &mut now };
-            let [x, y, z] = scene.splats.positions[i].map(f64::from);
-            let origin = scene.origin;
-            splats.positions.push([x + origin.x, y + origin.y, z + origin.z]);
-            splats.by_outputs.push(*by_output);
-        }
-        for (time, splats) in [(f64::from(last.time), now), (0.0, at_rest)] {
-            if !splats.positions.is_empty() {
-                network_backward(self.options.level, network, time, &splats, by_network);
-            }
-        }
-    }
-
     /// Stage 1, and how it was done.
     fn pose(&mut self, scene: &Scene, settings: &FrameSettings) -> PoseRule {
         let Some(network) = &scene.deformation else {
@@ -332,7 +321,11 @@ impl DifferentiableRenderer {
         // Nothing is kept between frames, so the terms of the positions are not worth memory.
         let options = DeformationOptions { level: self.options.level, position_term_budget: 0 };
         let mut stage = DeformationStage::with_options(scene, options);
-        self.poses.clone_from(stage.deform(scene, settings.time, settings.static_threshold));
+        let poses = match (&self.resting, settings.static_threshold) {
+            (Some(resting), None) => stage.evaluate_beside(settings.time, resting),
+            _ => stage.deform(scene, settings.time, settings.static_threshold),
+        };
+        self.poses.clone_from(poses);
         PoseRule::Deformed(network.rotation_rule)
     }
 

@@ -81,6 +81,7 @@ pub(super) struct ForwardBindings {
     canonical: Geometry,
     pub(super) encode: wgpu::BindGroup,
     pub(super) apply: wgpu::BindGroup,
+    pub(super) hold: wgpu::BindGroup,
 }
 
 impl ForwardBindings {
@@ -95,7 +96,12 @@ impl ForwardBindings {
             encode: kernels.bind(
                 gpu,
                 Stage::Encode,
-                &[buffers.chunk(), whole(&canonical.positions), whole(&buffers.activations)],
+                &[
+                    buffers.chunk(),
+                    whole(&canonical.positions),
+                    whole(&buffers.activations),
+                    whole(&buffers.order),
+                ],
             ),
             apply: kernels.bind(
                 gpu,
@@ -105,6 +111,22 @@ impl ForwardBindings {
                     buffers.layer(buffers.heads()),
                     whole(&buffers.parameters),
                     whole(&buffers.activations),
+                    whole(&canonical.positions),
+                    whole(&canonical.log_scales),
+                    whole(&canonical.rotations),
+                    whole(&buffers.deformed_positions),
+                    whole(&buffers.deformed_log_scales),
+                    whole(&buffers.deformed_rotations),
+                    whole(&buffers.order),
+                ],
+            ),
+            hold: kernels.bind(
+                gpu,
+                Stage::Hold,
+                &[
+                    buffers.chunk(),
+                    whole(&buffers.order),
+                    whole(&buffers.held),
                     whole(&canonical.positions),
                     whole(&canonical.log_scales),
                     whole(&canonical.rotations),
@@ -128,6 +150,7 @@ pub(super) struct BackwardBindings {
     canonical: Geometry,
     gradients: Geometry,
     pub(super) apply: wgpu::BindGroup,
+    pub(super) hold: wgpu::BindGroup,
 }
 
 impl BackwardBindings {
@@ -154,6 +177,20 @@ impl BackwardBindings {
                     whole(&gradients.log_scales),
                     whole(&gradients.rotations),
                     whole(&buffers.activations),
+                    whole(&buffers.order),
+                ],
+            ),
+            hold: kernels.bind(
+                gpu,
+                Stage::HoldBackward,
+                &[
+                    buffers.chunk(),
+                    whole(&buffers.order),
+                    whole(&canonical.log_scales),
+                    whole(&canonical.rotations),
+                    whole(&buffers.deformed_log_scales),
+                    whole(&gradients.log_scales),
+                    whole(&gradients.rotations),
                 ],
             ),
         }

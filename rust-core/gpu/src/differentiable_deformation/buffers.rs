@@ -5,6 +5,9 @@ use super::network_layout::NetworkLayout;
 use crate::layout::NetworkLayer;
 use crate::{Gpu, GpuError};
 
+/// Bytes of the outputs of one splat.
+pub(super) const HELD_BYTES: u64 = 40;
+
 /// What does not depend on whose splats are deformed.
 #[derive(Debug)]
 pub(super) struct NetworkBuffers {
@@ -12,10 +15,14 @@ pub(super) struct NetworkBuffers {
     pub(super) gradients: wgpu::Buffer,
     pub(super) activations: wgpu::Buffer,
     pub(super) parts: wgpu::Buffer,
-    /// One block per chunk.
+    /// One block per chunk, and one for the splats that rest.
     pub(super) chunks: wgpu::Buffer,
     /// One block per layer.
     pub(super) layers: wgpu::Buffer,
+    /// Splats that the network moves, then those that rest.
+    pub(super) order: wgpu::Buffer,
+    /// Outputs of those that rest.
+    pub(super) held: wgpu::Buffer,
     pub(super) deformed_positions: wgpu::Buffer,
     pub(super) deformed_log_scales: wgpu::Buffer,
     pub(super) deformed_rotations: wgpu::Buffer,
@@ -28,7 +35,8 @@ impl NetworkBuffers {
         capacity: u32,
         columns: u32,
     ) -> Result<Self, GpuError> {
-        let chunks = capacity.div_ceil(columns).max(1) * BLOCK_STRIDE;
+        // One more for the splats that rest.
+        let chunks = (capacity.div_ceil(columns).max(1) + 1) * BLOCK_STRIDE;
         let mut layers = vec![0; layout.layers.len() * BLOCK_STRIDE as usize];
         let slots = layers.chunks_exact_mut(BLOCK_STRIDE as usize);
         for (slot, layer) in slots.zip(&layout.layers) {
@@ -40,7 +48,7 @@ impl NetworkBuffers {
         for (what, need) in [
             ("activations of 128 splats in one binding", activation_bytes),
             ("gradients of a layer in one binding", layout.parts_bytes()),
-            ("rotations", splats * 16),
+            ("held outputs", splats * HELD_BYTES),
         ] {
             let have = gpu.max_binding();
             if need > have {
@@ -54,6 +62,8 @@ impl NetworkBuffers {
             parts: gpu.storage("parts of the network's gradients", layout.parts_bytes())?,
             chunks: gpu.uniform_of("chunks", &vec![0; chunks as usize]),
             layers: gpu.uniform_of("layers", &layers),
+            order: gpu.storage_of("order", &(0..capacity).collect::<Vec<u32>>())?,
+            held: gpu.storage("held outputs", splats * HELD_BYTES)?,
             deformed_positions: gpu.storage("deformed positions", splats * 12)?,
             deformed_log_scales: gpu.storage("deformed log-scales", splats * 12)?,
             deformed_rotations: gpu.storage("deformed rotations", splats * 16)?,

@@ -35,11 +35,12 @@ pub(super) struct Layers<'a> {
     pub(super) bindings: &'a [LayerBindings],
 }
 
-/// Splats to deformed splats, chunk by chunk.
+/// Splats to deformed splats, chunk by chunk, and those that rest.
 pub(super) fn forward<'a>(
     layers: Layers<'a>,
     splats: &'a ForwardBindings,
     chunks: &[Chunk],
+    resting: Chunk,
 ) -> Vec<Dispatch<'a>> {
     let mut list = Vec::new();
     for &chunk in chunks {
@@ -51,6 +52,7 @@ pub(super) fn forward<'a>(
             groups: folded(chunk.splats.div_ceil(64)),
         });
     }
+    push_resting(&mut list, Stage::Hold, &splats.hold, resting);
     list
 }
 
@@ -61,8 +63,10 @@ pub(super) fn backward<'a>(
     splats: &'a ForwardBindings,
     gradients: &'a BackwardBindings,
     chunks: &[Chunk],
+    resting: Chunk,
 ) -> Vec<Dispatch<'a>> {
     let mut list = Vec::new();
+    push_resting(&mut list, Stage::HoldBackward, &gradients.hold, resting);
     for &chunk in chunks.iter().rev() {
         if chunk.index + 1 < chunks.len() as u32 {
             push_hidden(&mut list, layers, splats, chunk);
@@ -78,6 +82,19 @@ pub(super) fn backward<'a>(
         }
     }
     list
+}
+
+/// One thread for each splat that rests.
+fn push_resting<'a>(
+    list: &mut Vec<Dispatch<'a>>,
+    stage: Stage,
+    bind_group: &'a wgpu::BindGroup,
+    resting: Chunk,
+) {
+    if resting.splats > 0 {
+        let groups = folded(resting.splats.div_ceil(64));
+        list.push(Dispatch { stage, bind_group, chunk: Some(resting), groups });
+    }
 }
 
 /// γ and the hidden layers of a chunk.

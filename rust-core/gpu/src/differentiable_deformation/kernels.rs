@@ -9,6 +9,8 @@ pub(super) enum Stage {
     Encode,
     Layer,
     Apply,
+    Hold,
+    HoldBackward,
     ApplyBackward,
     WeightsBackward,
     WeightsSum,
@@ -16,7 +18,7 @@ pub(super) enum Stage {
 }
 
 /// Number of stages.
-pub(super) const STAGES: usize = 7;
+pub(super) const STAGES: usize = 9;
 
 /// A kernel with one entry point.
 #[derive(Debug)]
@@ -37,15 +39,23 @@ impl DeformationKernels {
             Kernel { pipeline: interface.pipeline(gpu, shader.name, &[]), interface }
         };
         Self([
-            kernel(shaders::network::ENCODE, &[UniformAt, Read, Write]),
+            kernel(shaders::network::ENCODE, &[UniformAt, Read, Write, Read]),
             kernel(shaders::network::LAYER, &[Uniform, Read, Write]),
             kernel(
                 shaders::network::APPLY,
-                &[UniformAt, Uniform, Read, Read, Read, Read, Read, Write, Write, Write],
+                &[UniformAt, Uniform, Read, Read, Read, Read, Read, Write, Write, Write, Read],
+            ),
+            kernel(
+                shaders::network::HOLD,
+                &[UniformAt, Read, Read, Read, Read, Read, Write, Write, Write],
+            ),
+            kernel(
+                shaders::network::HOLD_BACKWARD,
+                &[UniformAt, Read, Read, Read, Read, Write, Write],
             ),
             kernel(
                 shaders::network::APPLY_BACKWARD,
-                &[UniformAt, Uniform, Read, Read, Read, Read, Write, Write, Write],
+                &[UniformAt, Uniform, Read, Read, Read, Read, Write, Write, Write, Read],
             ),
             kernel(shaders::network::WEIGHTS_BACKWARD, &[UniformAt, Uniform, Read, Write]),
             kernel(shaders::network::WEIGHTS_SUM, &[UniformAt, Uniform, Read, Write]),

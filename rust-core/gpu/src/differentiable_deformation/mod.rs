@@ -32,6 +32,7 @@ mod chunk;
 mod dispatches;
 mod kernels;
 mod network_layout;
+mod resting;
 #[cfg(test)]
 mod tests;
 mod times;
@@ -48,8 +49,8 @@ use crate::stage_pass::begin_pass;
 use crate::timing::Timer;
 use crate::{Gpu, GpuError, ParameterBuffers, readback};
 use bindings::{BackwardBindings, ForwardBindings, LayerBindings};
-use buffers::NetworkBuffers;
-use chunk::{Chunk, chunks, columns_within};
+use buffers::{HELD_BYTES, NetworkBuffers};
+use chunk::{Chunk, columns_within};
 use dispatches::{Dispatch, Layers};
 use kernels::STAGES;
 use network_layout::NetworkLayout;
@@ -74,6 +75,8 @@ pub struct DifferentiableDeformation {
     layers: Vec<LayerBindings>,
     forward: Option<ForwardBindings>,
     backward: Option<BackwardBindings>,
+    /// Splats that move, where others rest.
+    moving: Option<u32>,
     /// Splats of the evaluation that was recorded last.
     evaluated: Option<u32>,
 }
@@ -107,6 +110,7 @@ impl DifferentiableDeformation {
             layers,
             forward: None,
             backward: None,
+            moving: None,
             evaluated: None,
             buffers,
             layout,
@@ -126,7 +130,7 @@ impl DifferentiableDeformation {
     ) -> Result<u64, GpuError> {
         let layout = NetworkLayout::new(network)?;
         let columns = u64::from(columns_within(&layout, capacity, activation_budget));
-        let deformed = u64::from(capacity) * DEFORMED_BYTES;
+        let deformed = u64::from(capacity) * (DEFORMED_BYTES + HELD_BYTES + 4);
         let parameters = 2 * 4 * layout.parameters as u64;
         Ok(columns * layout.column_bytes() + layout.parts_bytes() + deformed + parameters)
     }
@@ -278,20 +282,16 @@ impl DifferentiableDeformation {
         time: f32,
     ) -> Result<Vec<Dispatch<'_>>, GpuError> {
         self.evaluated = None;
-        if canonical.capacity > self.capacity {
-            let bytes = |splats| u64::from(splats) * DEFORMED_BYTES;
-            let (need, have) = (bytes(canonical.capacity), bytes(self.capacity));
-            return Err(GpuError::OutOfMemory { what: "deformed splats", need, have });
-        }
-        let chunks = chunks(canonical.count, self.columns);
-        self.write_chunks(&chunks, time);
+        self.check_room(canonical.capacity)?;
+        let (chunks, resting) = self.chunks(canonical.count);
+        self.write_chunks(&chunks, resting, time);
         self.evaluated = Some(canonical.count);
         let bound = self.forward.take().filter(|bound| bound.are_of(canonical));
         let kernels = self.gpu.kernels().deformation(&self.gpu);
         let make = || ForwardBindings::new(&self.gpu, kernels, &self.buffers, canonical);
         let bound = self.forward.insert(bound.unwrap_or_else(make));
         let layers = Layers { layers: &self.layout.layers, bindings: &self.layers };
-        Ok(dispatches::forward(layers, bound, &chunks))
+        Ok(dispatches::forward(layers, bound, &chunks, resting))
     }
 
     fn backward_dispatches(
@@ -308,22 +308,22 @@ impl DifferentiableDeformation {
                 found: canonical.count as usize,
             }));
         };
+        let (chunks, resting) = self.chunks(canonical.count);
         let bound = self.backward.take().filter(|bound| bound.are_of(canonical, gradients));
         let kernels = self.gpu.kernels().deformation(&self.gpu);
         let make =
             || BackwardBindings::new(&self.gpu, kernels, &self.buffers, canonical, gradients);
         let bound = self.backward.insert(bound.unwrap_or_else(make));
         let layers = Layers { layers: &self.layout.layers, bindings: &self.layers };
-        let chunks = chunks(canonical.count, self.columns);
-        Ok(dispatches::backward(layers, forward, bound, &chunks))
+        Ok(dispatches::backward(layers, forward, bound, &chunks, resting))
     }
 
     /// Writes the uniform blocks of an evaluation.
-    fn write_chunks(&self, chunks: &[Chunk], time: f32) {
+    fn write_chunks(&self, chunks: &[Chunk], resting: Chunk, time: f32) {
         let base = self.layout.chunk_at(time);
-        let mut blocks = vec![0; chunks.len() * BLOCK_STRIDE as usize];
+        let mut blocks = vec![0; (chunks.len() + 1) * BLOCK_STRIDE as usize];
         let slots = blocks.chunks_exact_mut(BLOCK_STRIDE as usize);
-        for (slot, chunk) in slots.zip(chunks) {
+        for (slot, chunk) in slots.zip(chunks.iter().chain([&resting])) {
             let block = NetworkChunk {
                 first: chunk.first,
                 splats: chunk.splats,

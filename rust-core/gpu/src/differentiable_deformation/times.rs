@@ -15,6 +15,10 @@ pub struct DeformationTimes {
     pub layers: Duration,
     /// Heads, and deformed splats.
     pub apply: Duration,
+    /// Splats that rest.
+    pub hold: Duration,
+    /// Their gradients.
+    pub hold_backward: Duration,
     /// Gradients by the outputs.
     pub apply_backward: Duration,
     /// Gradients by weights and biases, in parts.
@@ -27,12 +31,23 @@ pub struct DeformationTimes {
 
 impl DeformationTimes {
     pub(super) fn of_stages(times: [Duration; STAGES]) -> Self {
-        let [encode, layers, apply, apply_backward, weights_backward, weights_sum, layers_backward] =
-            times;
+        let [
+            encode,
+            layers,
+            apply,
+            hold,
+            hold_backward,
+            apply_backward,
+            weights_backward,
+            weights_sum,
+            layers_backward,
+        ] = times;
         Self {
             encode,
             layers,
             apply,
+            hold,
+            hold_backward,
             apply_backward,
             weights_backward,
             weights_sum,
@@ -43,13 +58,14 @@ impl DeformationTimes {
     /// γ, hidden layers and heads, also where the backward pass evaluates them again.
     #[must_use]
     pub fn forward(&self) -> Duration {
-        self.encode + self.layers + self.apply
+        self.encode + self.layers + self.apply + self.hold
     }
 
     /// The rest.
     #[must_use]
     pub fn backward(&self) -> Duration {
-        self.apply_backward + self.weights_backward + self.weights_sum + self.layers_backward
+        let weights = self.weights_backward + self.weights_sum;
+        self.apply_backward + self.hold_backward + weights + self.layers_backward
     }
 
     /// The sum.
@@ -64,6 +80,8 @@ impl AddAssign for DeformationTimes {
         self.encode += other.encode;
         self.layers += other.layers;
         self.apply += other.apply;
+        self.hold += other.hold;
+        self.hold_backward += other.hold_backward;
         self.apply_backward += other.apply_backward;
         self.weights_backward += other.weights_backward;
         self.weights_sum += other.weights_sum;

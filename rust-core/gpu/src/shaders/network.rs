@@ -14,6 +14,7 @@ const MATRIX_TILE: &str = wgsl!("common/matrix_tile");
 const ACTIVATION_BLOCK: &str = wgsl!("common/activation_block");
 const WEIGHT_BLOCK: &str = wgsl!("common/weight_block");
 const DEFORMED_PARAMETERS: &str = wgsl!("common/deformed_parameters");
+const DEFORMED_SPLAT: &str = wgsl!("common/deformed_splat");
 
 /// Splats → input of the network.
 pub const ENCODE: Shader = Shader {
@@ -35,6 +36,7 @@ pub const APPLY: Shader = Shader {
         EXPONENTIAL,
         NETWORK,
         DEFORMED_PARAMETERS,
+        DEFORMED_SPLAT,
         wgsl!("deform_apply"),
     ],
 };
@@ -48,7 +50,36 @@ pub const APPLY_BACKWARD: Shader = Shader {
         EXPONENTIAL,
         NETWORK,
         DEFORMED_PARAMETERS,
+        DEFORMED_SPLAT,
         wgsl!("deform_apply_backward"),
+    ],
+};
+/// Splats that rest, without the network.
+pub const HOLD: Shader = Shader {
+    name: "deform_hold",
+    parts: &[
+        DISPATCH,
+        NUMBERS,
+        ROTATION,
+        EXPONENTIAL,
+        NETWORK,
+        DEFORMED_PARAMETERS,
+        DEFORMED_SPLAT,
+        wgsl!("deform_hold"),
+    ],
+};
+/// The mirror of [`HOLD`].
+pub const HOLD_BACKWARD: Shader = Shader {
+    name: "deform_hold_backward",
+    parts: &[
+        DISPATCH,
+        NUMBERS,
+        ROTATION,
+        EXPONENTIAL,
+        NETWORK,
+        DEFORMED_PARAMETERS,
+        DEFORMED_SPLAT,
+        wgsl!("deform_hold_backward"),
     ],
 };
 /// The mirror of a layer by its input.
@@ -66,5 +97,14 @@ pub const WEIGHTS_SUM: Shader =
     Shader { name: "deform_weights_sum", parts: &[DISPATCH, NETWORK, wgsl!("deform_weights_sum")] };
 
 /// All of them.
-pub const ALL: [Shader; 7] =
-    [ENCODE, LAYER, APPLY, APPLY_BACKWARD, LAYER_BACKWARD, WEIGHTS_BACKWARD, WEIGHTS_SUM];
+pub const ALL: [Shader; 9] = [
+    ENCODE,
+    LAYER,
+    APPLY,
+    HOLD,
+    HOLD_BACKWARD,
+    APPLY_BACKWARD,
+    LAYER_BACKWARD,
+    WEIGHTS_BACKWARD,
+    WEIGHTS_SUM,
+];

@@ -5,9 +5,11 @@
 
 mod architecture;
 mod encoding;
+mod resting;
 
 pub use architecture::{NamedTensors, Tensor};
 pub use encoding::{Encoding, MAX_OCTAVES};
+pub use resting::{DeformationOutputs, RestingSplats};
 
 /// A fully connected layer y = W x + b.
 #[derive(Clone, Debug, PartialEq)]

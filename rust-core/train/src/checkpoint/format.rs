@@ -3,20 +3,22 @@
 //! | bytes | content |
 //! |---|---|
 //! | 8 | `TRPZCKPT` |
-//! | 4 | version, 2 |
+//! | 4 | version, 3 |
 //! | 4 | length h of the header |
-//! | h | header, JSON: `step`, `splats`, `sh_degree`, `network`, `config`, `progress` |
+//! | h | header, JSON: `step`, `splats`, `sh_degree`, `network`, `moving`, `config`, `progress` |
 //! | 4·m | parameters as f32: positions, log_scales, rotations, opacity_logits, sh_dc, sh_rest |
 //! | 4·m | first moments, likewise |
 //! | 4·m | second moments, likewise |
 //! | 4·w | where `network` is true: weights and biases of the standard network, as in `weights.bin` |
 //! | 4·w | their first moments, likewise |
 //! | 4·w | their second moments, likewise |
+//! | 4·v | where `moving` is a number v: u32 indices of the splats that the network moves, ascending |
+//! | 40·(splats − v) | there too: the outputs that each other one holds, f32 |
 //! | 4 | CRC-32 (IEEE) of everything before it |
 //!
 //! All little-endian; m = splats · (14 + 3·((sh_degree + 1)² − 1)), w = 506 378. The length of the
 //! file follows from the header, and is compared before anything is allocated. Version 1 had no
-//! `network`, and is still read.
+//! `network`, version 2 no `moving`; both are still read.
 
 use std::fs::File;
 use std::io::{BufReader, Read, Write};
@@ -25,6 +27,7 @@ use std::path::Path;
 use crc32fast::Hasher;
 use serde::{Deserialize, Serialize};
 use trapeze_formats::{ParseError, ReadError, WriteError, write_atomically};
+use trapeze_scene::deformation::RestingSplats;
 use trapeze_scene::{ShDegree, Splats};
 
 use super::{Checkpoint, Progress};
@@ -33,7 +36,7 @@ use crate::parameters::{ParameterGroup, zeros_like};
 use crate::{TrainedNetwork, TrainingState, network_parameters, set_network_parameters};
 
 const MAGIC: [u8; 8] = *b"TRPZCKPT";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 /// The first version, which had no deformation network.
 const OLDEST_VERSION: u32 = 1;
 /// Bytes before the header.
@@ -51,6 +54,9 @@ struct Header {
     /// Whether the standard deformation network follows the splats.
     #[serde(default)]
     network: bool,
+    /// Splats that the network moves, where others rest.
+    #[serde(default)]
+    moving: Option<u32>,
     config: TrainingConfig,
     progress: Progress,
 }
@@ -82,6 +88,7 @@ pub fn write_checkpoint(path: &Path, checkpoint: &Checkpoint) -> Result<(), Writ
         splats: state.splats.len() as u32,
         sh_degree: state.splats.sh_degree as u32,
         network: state.network.is_some(),
+        moving: state.resting.as_ref().map(|resting| resting.moving().len() as u32),
         config: checkpoint.config.clone(),
         progress: checkpoint.progress.clone(),
     })
@@ -101,6 +108,11 @@ pub fn write_checkpoint(path: &Path, checkpoint: &Checkpoint) -> Result<(), Writ
             write_floats(&mut out, &network_parameters(&trained.network))?;
             write_floats(&mut out, &trained.first_moments)?;
             write_floats(&mut out, &trained.second_moments)?;
+        }
+        if let Some(resting) = &state.resting {
+            let moving: Vec<f32> = resting.moving().iter().copied().map(f32::from_bits).collect();
+            write_floats(&mut out, &moving)?;
+            write_floats(&mut out, resting.held().as_flattened())?;
         }
         let checksum = out.hasher.finalize();
         out.inner.write_all(&checksum.to_le_bytes())
@@ -156,7 +168,15 @@ fn parse(source: impl Read, length: u64) -> Result<Checkpoint, ParseError> {
     let degree = ShDegree::try_from(header.sh_degree)?;
     // At most 2³² · 59 · 12 bytes and those of one network: no overflow in 64 bits.
     let network = if header.network { TrainedNetwork::bytes() } else { 0 };
-    let arrays = TrainingState::bytes(header.splats.into(), degree) + network;
+    let resting = match header.moving {
+        Some(moving) if moving > header.splats => {
+            let expected = format!("at most {} splats", header.splats);
+            return Err(ParseError::value("moving", expected, moving));
+        }
+        Some(moving) => 4 * u64::from(moving) + 40 * u64::from(header.splats - moving),
+        None => 0,
+    };
+    let arrays = TrainingState::bytes(header.splats.into(), degree) + network + resting;
     let expected = PREFIX + u64::from(header_length) + arrays + 4;
     if length < expected {
         return Err(truncated("checkpoint", expected, length));
@@ -164,7 +184,8 @@ fn parse(source: impl Read, length: u64) -> Result<Checkpoint, ParseError> {
     if length > expected {
         return Err(ParseError::value("length", format!("{expected} bytes"), length));
     }
-    let state = read_state(&mut input, &header, degree)?;
+    let mut state = read_state(&mut input, &header, degree)?;
+    state.resting = read_resting(&mut input, &header)?;
     let computed = input.hasher.finalize();
     let mut stored = [0; 4];
     input.inner.read_exact(&mut stored)?;
@@ -199,6 +220,19 @@ fn read_state<R: Read>(
         state.network = Some(read_network(input)?);
     }
     Ok(state)
+}
+
+fn read_resting<R: Read>(
+    input: &mut Checksummed<R>,
+    header: &Header,
+) -> Result<Option<RestingSplats>, ParseError> {
+    let Some(moving) = header.moving else { return Ok(None) };
+    let mut indices = vec![0.0; moving as usize];
+    read_floats(input, &mut indices)?;
+    let mut held = vec![[0.0; 10]; (header.splats - moving) as usize];
+    read_floats(input, held.as_flattened_mut())?;
+    let resting = RestingSplats::new(indices.into_iter().map(f32::to_bits).collect(), held);
+    resting.map(Some).map_err(|error| ParseError::value("moving", "ascending indices", error))
 }
 
 fn read_network<R: Read>(input: &mut Checksummed<R>) -> std::io::Result<TrainedNetwork> {

@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::TrainingState;
 use crate::config::TrainingConfig;
+use crate::rest::RestRecord;
 use crate::trainer::{Health, Search};
 
 pub use folder::CheckpointFolder;
@@ -35,6 +36,8 @@ pub struct Progress {
     pub seconds: f64,
     /// What the reports said so far.
     pub health: Health,
+    /// How much was made of splats that rest.
+    pub rest: RestRecord,
     /// What the search for the budget has chosen so far, in a run that has one.
     pub search: Option<Search>,
 }
@@ -49,6 +52,7 @@ impl Default for Progress {
             dataset: String::new(),
             seconds: 0.0,
             health: Health::default(),
+            rest: RestRecord::default(),
             search: None,
         }
     }

@@ -89,6 +89,10 @@ pub struct DeformationTraining {
     pub time_noise: f64,
     /// Steps of the network after which that noise has faded, linearly.
     pub noisy_steps: u32,
+    /// The first step in which splats may rest: see [`rest`](crate::rest).
+    pub rest_from: u32,
+    /// How far a splat may be seen to move that rests, pixels; 0 lets none rest.
+    pub rest_within: f64,
     /// Steps in which nothing but the difference to the photographs acts on the splats: no pressure
     /// on opacities and scales, no noise, no SSIM.
     pub undisturbed: u32,
@@ -106,6 +110,8 @@ impl Default for DeformationTraining {
             rate_end: 3e-5,
             time_noise: 0.0,
             noisy_steps: 20_000,
+            rest_from: 10_000,
+            rest_within: 0.5,
             undisturbed: 3_000,
         }
     }

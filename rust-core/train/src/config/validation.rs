@@ -67,7 +67,8 @@ impl DeformationTraining {
         let least = f64::from(f32::MIN_POSITIVE);
         in_range("deformation.rate_start", self.rate_start, least, 1e6)?;
         in_range("deformation.rate_end", self.rate_end, least, 1e6)?;
-        in_range("deformation.time_noise", self.time_noise, 0.0, 1.0)
+        in_range("deformation.time_noise", self.time_noise, 0.0, 1.0)?;
+        in_range("deformation.rest_within", self.rest_within, 0.0, 1e3)
     }
 }
 

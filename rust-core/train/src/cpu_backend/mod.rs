@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use fearless_simd::Level;
 use trapeze_cpu::{DifferentiableRenderer, ImageGradient, RendererOptions};
+use trapeze_scene::deformation::RestingSplats;
 use trapeze_scene::{Camera, Frame, FrameSettings, Scene, ShDegree, Splats};
 
 use crate::backend::{BackendError, StepReport, TrainingBackend, TrainingView};
@@ -14,6 +15,7 @@ use crate::densify::densify;
 use crate::loss::{ImageLoss, LossValue, TargetImage};
 use crate::optimizer::apply_update;
 use crate::report_queue::ReportQueue;
+use crate::rest::{Look, look_at};
 use crate::schedule::{DensifyPlan, StepPlan};
 use crate::{TrainedNetwork, TrainingState};
 use targets::ResidentTargets;
@@ -200,6 +202,7 @@ impl TrainingBackend for CpuBackend {
             return Err(BackendError::OutOfMemory { what, needed, available });
         }
         self.state.clone_from(state);
+        self.renderer.set_resting(state.resting.clone());
         self.reports.clear();
         Ok(())
     }
@@ -233,6 +236,7 @@ impl TrainingBackend for CpuBackend {
 
     fn densify(&mut self, plan: &DensifyPlan) -> Result<(), BackendError> {
         densify(&mut self.state, plan);
+        self.renderer.set_resting(None);
         Ok(())
     }
 
@@ -242,6 +246,20 @@ impl TrainingBackend for CpuBackend {
 
     fn reports(&mut self, step: u32) -> Result<Vec<StepReport>, BackendError> {
         Ok(self.reports.take_up_to(step))
+    }
+
+    fn look(&mut self, times: &[f32]) -> Result<Look, BackendError> {
+        self.rest(None)?;
+        self.lend(true);
+        let look = look_at(&self.scene, self.options.level, times);
+        self.lend(false);
+        Ok(look)
+    }
+
+    fn rest(&mut self, resting: Option<RestingSplats>) -> Result<(), BackendError> {
+        self.renderer.set_resting(resting.clone());
+        self.state.resting = resting;
+        Ok(())
     }
 
     fn opacity_gradient(

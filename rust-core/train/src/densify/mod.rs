@@ -21,8 +21,10 @@ pub(crate) use sampling::{OpacityUnits, weight_bits, weight_shift};
 use crate::TrainingState;
 use crate::schedule::DensifyPlan;
 
-/// Carries out a plan: the dead move, then the set grows to the plan's count.
+/// Carries out a plan: the dead move, then the set grows to the plan's count. No splat rests after it,
+/// since places changed hands.
 pub fn densify(state: &mut TrainingState, plan: &DensifyPlan) {
+    state.resting = None;
     relocate_dead(state, plan.dead_opacity, plan.seed);
     grow(state, plan.count, plan.dead_opacity, plan.seed);
 }

@@ -119,12 +119,15 @@ impl Run {
         if let Some(mut stage) = last
             && stage.write(gpu, trained, capacity)?
         {
+            stage.rest(state.resting.clone())?;
             self.network = Some(stage);
             return Ok(());
         }
         let (counts, reports) = (self.renderer.counts(), &reports.buffer);
         let place = Place { capacity, activation_budget, counts, reports };
-        self.network = Some(NetworkStage::upload(gpu, kernels, trained, place)?);
+        let mut stage = NetworkStage::upload(gpu, kernels, trained, place)?;
+        stage.rest(state.resting.clone())?;
+        self.network = Some(stage);
         Ok(())
     }
 

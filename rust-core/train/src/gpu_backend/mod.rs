@@ -21,6 +21,7 @@ mod densify_stage;
 mod device;
 mod kernels;
 mod layout;
+mod look;
 mod loss_stage;
 mod memory;
 mod network_stage;
@@ -34,15 +35,18 @@ mod targets;
 mod tests;
 mod timing;
 mod update_stage;
+mod waiting;
 
 use std::sync::Arc;
 
 use trapeze_gpu::{Created, ForwardSettings, Gpu, GpuError, ParameterBuffers};
+use trapeze_scene::deformation::RestingSplats;
 use trapeze_scene::{Camera, DeformationNetwork, Frame, FrameSettings, ShDegree};
 
 use crate::backend::{BackendError, StepReport, TrainingBackend, TrainingView};
 use crate::loss::TargetImage;
 use crate::report_queue::ReportQueue;
+use crate::rest::Look;
 use crate::schedule::{DensifyPlan, StepPlan};
 use crate::{TrainedNetwork, TrainingState};
 use device::{DeviceSide, Run};
@@ -50,7 +54,6 @@ pub use memory::GpuMemoryPlan;
 use network_stage::NetworkStage;
 pub use options::GpuBackendOptions;
 use orders::{Order, OrderLog, StepOrder};
-use reports::RawReport;
 use targets::ResidentTargets;
 pub use timing::GpuStepTimes;
 
@@ -186,79 +189,9 @@ impl GpuBackend {
         }
     }
 
-    /// Takes the reports that have arrived.
-    fn collect(&mut self) -> Result<(), BackendError> {
-        self.device.gpu.poll().map_err(backend_error)?;
-        while let Some(reports) = self.device.reports.take().map_err(backend_error)? {
-            for report in reports {
-                if report.halted {
-                    self.repeat(&report)?;
-                    break;
-                }
-                self.make_ready(&report);
-            }
-        }
-        Ok(())
-    }
-
-    fn make_ready(&mut self, report: &RawReport) {
-        let Some(order) = self.log.pop_step() else { return };
-        let [width, height] = order.target.size.map(|size| size as usize);
-        self.ready.push(StepReport {
-            step: order.plan.step,
-            loss: report.loss(width * height, order.plan.ssim_weight),
-            not_finite: report.not_finite,
-            visible: report.visible,
-        });
-        if let Some(run) = &mut self.run {
-            run.grow_ahead(report.entries);
-        }
-    }
-
-    /// Makes room for the entries of the oldest step and gives its order and all later ones again.
-    fn repeat(&mut self, halted: &RawReport) -> Result<(), BackendError> {
-        self.halts += 1;
-        let DeviceSide { gpu, reports, .. } = &mut self.device;
-        gpu.wait().map_err(backend_error)?;
-        reports.discard().map_err(backend_error)?;
-        let Some(run) = &mut self.run else { return Ok(()) };
-        run.make_room(gpu, halted.entries).map_err(backend_error)?;
-        let orders = self.log.take_from_step();
-        if let Some((splats, _)) = orders.first() {
-            run.splats.set_count(*splats);
-        }
-        orders.into_iter().try_for_each(|(_, order)| self.give(order))
-    }
-
-    /// Waits for the reports of all steps up to `step`.
-    fn wait_for(&mut self, step: u32) -> Result<(), BackendError> {
-        self.collect()?;
-        while self.log.waits_for(step) {
-            if !self.device.reports.is_waited_for() {
-                self.flush();
-            }
-            self.waits += 1;
-            let DeviceSide { gpu, reports, .. } = &self.device;
-            reports.wait_for_oldest(gpu).map_err(backend_error)?;
-            self.collect()?;
-        }
-        Ok(())
-    }
-
-    /// Sends off the copy of reports that do not make a batch yet.
-    fn flush(&mut self) {
-        let device = &mut self.device;
-        if device.reports.has_open() {
-            let mut encoder = device.gpu.device().create_command_encoder(&Default::default());
-            device.reports.record(&mut encoder, true);
-            device.submit(encoder);
-        }
-    }
-
-    /// Waits until every order is known to have been carried out.
-    fn settle(&mut self) -> Result<(), BackendError> {
-        self.check_device()?;
-        self.wait_for(u32::MAX)
+    fn has_resting(&self) -> bool {
+        let network = self.run.as_ref().and_then(|run| run.network.as_ref());
+        network.is_some_and(|network| network.resting().is_some())
     }
 
     /// Opens the device again after it was lost.
@@ -312,6 +245,7 @@ impl TrainingBackend for GpuBackend {
         let mut state = run.splats.read(&self.device.gpu, self.step).map_err(backend_error)?;
         let network = run.network.as_ref().map(NetworkStage::read).transpose();
         state.network = network.map_err(backend_error)?;
+        state.resting = run.network.as_ref().and_then(|stage| stage.resting().cloned());
         Ok(state)
     }
 
@@ -342,6 +276,11 @@ impl TrainingBackend for GpuBackend {
     }
 
     fn densify(&mut self, plan: &DensifyPlan) -> Result<(), BackendError> {
+        // Steps that would have to be repeated need the splats to rest that rested in them.
+        if self.has_resting() {
+            self.settle()?;
+            self.rest(None)?;
+        }
         self.give(Order::Densify(*plan, self.step))
     }
 
@@ -353,6 +292,21 @@ impl TrainingBackend for GpuBackend {
         self.check_device()?;
         self.wait_for(step)?;
         Ok(self.ready.take_up_to(step))
+    }
+
+    fn look(&mut self, times: &[f32]) -> Result<Look, BackendError> {
+        self.settle()?;
+        self.rest(None)?;
+        let Some(run) = &mut self.run else { return Ok(Look::default()) };
+        look::look(&mut self.device, run, times).map_err(backend_error)
+    }
+
+    fn rest(&mut self, resting: Option<RestingSplats>) -> Result<(), BackendError> {
+        self.check_device()?;
+        let Some(network) = self.run.as_mut().and_then(|run| run.network.as_mut()) else {
+            return Ok(());
+        };
+        network.rest(resting).map_err(backend_error)
     }
 
     fn opacity_gradient(

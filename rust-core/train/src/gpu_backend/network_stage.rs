@@ -4,9 +4,11 @@
 use trapeze_gpu::compute::{Groups, dispatch, whole};
 use trapeze_gpu::{DeformationTimes, DifferentiableDeformation, Gpu, GpuError, ParameterBuffers};
 use trapeze_scene::DeformationNetwork;
+use trapeze_scene::deformation::RestingSplats;
 
 use super::kernels::TrainingKernels;
 use super::layout::TrainingStep;
+use super::look;
 use crate::TrainedNetwork;
 use crate::network::{network_parameters, set_network_parameters};
 use crate::schedule::NetworkStep;
@@ -28,6 +30,8 @@ pub(super) struct NetworkStage {
     /// For all but its parameters.
     network: DeformationNetwork,
     deformation: DifferentiableDeformation,
+    /// Which splats rest.
+    resting: Option<RestingSplats>,
     first_moments: wgpu::Buffer,
     second_moments: wgpu::Buffer,
     /// The uniform block of its update.
@@ -43,6 +47,7 @@ impl NetworkStage {
         activation_budget: u64,
     ) -> Result<u64, GpuError> {
         let moments = 2 * 4 * network.parameter_count() as u64;
+        let moments = moments + look::bytes(capacity);
         Ok(moments + DifferentiableDeformation::bytes(network, capacity, activation_budget)?)
     }
 
@@ -78,7 +83,8 @@ impl NetworkStage {
                 whole(place.counts),
             ],
         );
-        Ok(Self { network, deformation, first_moments, second_moments, uniform, update })
+        let resting = None;
+        Ok(Self { network, deformation, resting, first_moments, second_moments, uniform, update })
     }
 
     /// Replaces what is there, if it fits into the buffers that there are.
@@ -96,6 +102,17 @@ impl NetworkStage {
         gpu.write(&self.first_moments, &self.deformation.pack(&trained.first_moments))?;
         gpu.write(&self.second_moments, &self.deformation.pack(&trained.second_moments))?;
         Ok(true)
+    }
+
+    /// Which splats rest from the next submission on.
+    pub(super) fn rest(&mut self, resting: Option<RestingSplats>) -> Result<(), GpuError> {
+        self.deformation.set_resting(resting.as_ref())?;
+        self.resting = resting;
+        Ok(())
+    }
+
+    pub(super) fn resting(&self) -> Option<&RestingSplats> {
+        self.resting.as_ref()
     }
 
     /// Waits for the network as it is.

@@ -62,6 +62,7 @@ impl ResidentSplats {
             first_moments: self.first_moments.read(gpu)?,
             second_moments: self.second_moments.read(gpu)?,
             network: None,
+            resting: None,
         })
     }
 

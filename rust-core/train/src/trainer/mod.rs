@@ -32,6 +32,7 @@ mod initial;
 mod lifecycle;
 mod memory;
 mod photographs;
+mod rest;
 mod run;
 pub mod search;
 mod summary;

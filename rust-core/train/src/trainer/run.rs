@@ -52,10 +52,15 @@ impl<B: TrainingBackend> Trainer<B> {
         if self.trial.is_none() {
             self.begin_trial(observer)?;
         }
-        if let Some(plan) = self.densify_plan() {
-            self.backend.densify(&plan)?;
+        let change = self.densify_plan();
+        if let Some(change) = &change {
+            self.backend.densify(change)?;
         }
+        self.look_for_rest(change.is_some())?;
         let plan = self.step_plan();
+        if plan.network.is_some() {
+            self.progress.rest.count(self.backend.splat_count());
+        }
         let id = self.views.at_step(self.step);
         self.make_resident(id)?;
         self.backend.step(&plan, self.views.view(id))?;

@@ -7,6 +7,7 @@ use crate::MotionSummary;
 use crate::backend::TrainingBackend;
 use crate::config::TrainingConfig;
 use crate::evaluation::Evaluation;
+use crate::rest::RestRecord;
 
 /// A run in figures: what it was given, what it decided, what came out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -36,6 +37,9 @@ pub struct TrainingSummary {
     /// What of a scene that moves may rest; `None` in a static one.
     #[serde(default)]
     pub motion: Option<MotionSummary>,
+    /// How much training made of splats that rest; `None` in a static scene.
+    #[serde(default)]
+    pub rest: Option<RestRecord>,
     /// Figures of the held-out views, if there are any.
     pub test: Option<Evaluation>,
 }
@@ -58,6 +62,7 @@ impl<B: TrainingBackend> Trainer<B> {
             config: self.config.clone(),
             search: self.progress.search.clone(),
             motion: None,
+            rest: self.config.deformation.map(|_| self.progress.rest),
             test: None,
         }
     }

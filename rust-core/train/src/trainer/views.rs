@@ -85,6 +85,15 @@ impl Views {
         &self.shown
     }
 
+    /// Times of the training views, at most `count`, from the middle of as many equal parts.
+    pub(super) fn moments(&self, count: usize) -> Vec<f32> {
+        let mut times: Vec<f32> = self.all.iter().map(|view| view.time).collect();
+        times.sort_unstable_by(f32::total_cmp);
+        times.dedup();
+        let count = count.min(times.len());
+        (0..count).map(|k| times[(2 * k + 1) * times.len() / (2 * count)]).collect()
+    }
+
     pub(super) fn dataset_indices(&self) -> &[usize] {
         &self.dataset_indices
     }

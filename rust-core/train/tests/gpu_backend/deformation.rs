@@ -7,9 +7,9 @@ use trapeze_train::{CpuBackend, GpuMemoryPlan, TrainedNetwork};
 use super::*;
 
 /// Steps before the network's first.
-const WARM_UP: u32 = 3;
+pub(super) const WARM_UP: u32 = 3;
 
-fn config(steps: u32) -> TrainingConfig {
+pub(super) fn config(steps: u32) -> TrainingConfig {
     let deformation = DeformationTraining {
         warm_up: WARM_UP,
         time_noise: 0.02,
@@ -27,7 +27,7 @@ fn state(n: usize) -> TrainingState {
 }
 
 /// Views at different times, their photographs resident.
-fn moving_views(backend: &mut dyn TrainingBackend) -> Vec<TrainingView> {
+pub(super) fn moving_views(backend: &mut dyn TrainingBackend) -> Vec<TrainingView> {
     let mut views = admitted(backend, 3);
     views.iter_mut().enumerate().for_each(|(i, view)| view.time = 0.5 * i as f32);
     views
@@ -68,7 +68,7 @@ fn a_network_learns_after_its_warm_up_and_the_loss_falls() {
 }
 
 /// A network whose heads have learned something, so that gradients reach all of its layers.
-fn moving_state(n: usize) -> TrainingState {
+pub(super) fn moving_state(n: usize) -> TrainingState {
     let mut state = state(n);
     let layers = state.network.iter_mut().flat_map(|trained| trained.network.layers_mut());
     for (i, weight) in layers.skip(8).flat_map(|head| &mut head.weight).enumerate() {
@@ -78,7 +78,7 @@ fn moving_state(n: usize) -> TrainingState {
 }
 
 /// Both backends, the CPU's first.
-fn both(gpu: &Gpu) -> [Box<dyn TrainingBackend>; 2] {
+pub(super) fn both(gpu: &Gpu) -> [Box<dyn TrainingBackend>; 2] {
     [Box::new(CpuBackend::default()), Box::new(backend(gpu))]
 }
 

@@ -2,6 +2,7 @@
 
 mod deformation;
 mod removal;
+mod rest;
 mod runs;
 mod steps;
 #[path = "../support/mod.rs"]

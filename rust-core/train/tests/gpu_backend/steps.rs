@@ -119,6 +119,7 @@ fn a_state_comes_back_as_it_was_loaded() {
             first_moments: part(1),
             second_moments: part(2),
             network: None,
+            resting: None,
         };
         backend.load(&state, 60).unwrap();
         assert_eq!(backend.state().unwrap(), state);

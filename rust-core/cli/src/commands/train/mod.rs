@@ -198,6 +198,13 @@ fn describe(summary: &TrainingSummary, scene: &std::path::Path) {
         summary.seconds,
         summary.steps_per_second,
     );
+    if let Some(rest) = summary.rest.filter(|rest| rest.spared > 0) {
+        eprintln!(
+            "training spared {:.0} % of the network's evaluations: {} splats rested at the end",
+            100.0 * rest.spared_share(),
+            rest.resting,
+        );
+    }
     if let Some(motion) = &summary.motion {
         eprintln!(
             "{} of {} splats move, the others may rest ({} %): {}",

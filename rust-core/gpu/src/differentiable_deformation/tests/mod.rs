@@ -1,8 +1,11 @@
 //! The kernels against a plain double-precision forward and backward pass.
 
 mod reference;
+mod resting;
 
-use trapeze_scene::deformation::{Encoding, Linear, PositionHead, RotationRule, TimeNetwork};
+use trapeze_scene::deformation::{
+    Encoding, Linear, PositionHead, RestingSplats, RotationRule, TimeNetwork,
+};
 use trapeze_scene::{DeformationNetwork, ShDegree, Splats};
 
 use super::DifferentiableDeformation;
@@ -106,12 +109,25 @@ fn run(
     by_deformed: &[[f32; 10]],
     activation_budget: u64,
 ) -> Found {
+    run_beside(gpu, network, splats, by_deformed, activation_budget, None)
+}
+
+/// The same with splats that rest.
+fn run_beside(
+    gpu: &Gpu,
+    network: &DeformationNetwork,
+    splats: &Splats,
+    by_deformed: &[[f32; 10]],
+    activation_budget: u64,
+    resting: Option<&RestingSplats>,
+) -> Found {
     let parameters = flat_parameters(network);
     let n = splats.positions.len();
     let mut deformation =
         DifferentiableDeformation::new(gpu, network, &parameters, n as u32, activation_budget)
             .unwrap();
     assert_eq!(deformation.read().unwrap(), parameters);
+    deformation.set_resting(resting).unwrap();
     let canonical = ParameterBuffers::from_splats(gpu, splats, n as u32).unwrap();
     let submit = |record: &mut dyn FnMut(&mut wgpu::ComputePass<'_>)| {
         let mut encoder = gpu.device().create_command_encoder(&Default::default());

@@ -58,6 +58,8 @@ fn with_network() -> Checkpoint {
     let gradients = network_parameters(&TrainedNetwork::standard(10).network);
     adam_step_of_network(Level::baseline(), &mut trained, &gradients, &step);
     checkpoint.state.network = Some(trained);
+    let held = (0..19).map(|i| [i as f32, -0.5, 0.0, 1e-30, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
+    checkpoint.state.resting = Some(RestingSplats::new(vec![4, 20], held.collect()).unwrap());
     checkpoint
 }
 
@@ -159,6 +161,7 @@ fn hostile_counts_are_refused_before_anything_is_allocated() {
             splats: 777_777,
             sh_degree: 3,
             network: true,
+            moving: Some(0),
             config: TrainingConfig::default(),
             progress: Progress::default(),
         })
@@ -182,9 +185,39 @@ fn other_files_and_versions_are_refused_by_field() {
     let mut bytes = bytes_of(&checkpoint(ShDegree::Zero));
     bytes[8] = 9;
     let error = parse_bytes(&bytes).unwrap_err().to_string();
-    assert_eq!(error, "version: expected 1 to 2, found 9");
+    assert_eq!(error, "version: expected 1 to 3, found 9");
     let error = parse_bytes(b"ply\nformat ascii 1.0\n").unwrap_err().to_string();
     assert!(error.starts_with("magic: expected \"TRPZCKPT\""), "{error}");
     let folder = tempfile::tempdir().unwrap();
     assert!(read_checkpoint(folder.path()).is_err());
+}
+
+#[test]
+fn splats_that_rest_and_are_not_there_are_refused() {
+    let written = with_network();
+    let header_of = |moving: u32| Header {
+        step: 0,
+        splats: 21,
+        sh_degree: 0,
+        network: true,
+        moving: Some(moving),
+        config: written.config.clone(),
+        progress: Progress::default(),
+    };
+    let header = serde_json::to_string(&header_of(22)).unwrap();
+    let mut bytes = MAGIC.to_vec();
+    bytes.extend(VERSION.to_le_bytes());
+    bytes.extend((header.len() as u32).to_le_bytes());
+    bytes.extend(header.bytes());
+    let error = parse_bytes(&bytes).unwrap_err().to_string();
+    assert_eq!(error, "moving: expected at most 21 splats, found 22");
+    // The indices are the first of what is behind the network, the checksum is the last.
+    let mut bytes = bytes_of(&written);
+    let first = bytes.len() - 4 - 40 * 19 - 4 * 2;
+    bytes[first..first + 4].copy_from_slice(&20u32.to_le_bytes());
+    let end = bytes.len() - 4;
+    let checksum = crc32fast::hash(&bytes[..end]);
+    bytes[end..].copy_from_slice(&checksum.to_le_bytes());
+    let error = parse_bytes(&bytes).unwrap_err().to_string();
+    assert!(error.starts_with("moving: expected ascending indices"), "{error}");
 }

@@ -58,6 +58,32 @@ fn a_killed_or_paused_run_of_a_moving_scene_ends_bit_identical() {
 }
 
 #[test]
+fn a_killed_or_paused_run_with_splats_at_rest_ends_bit_identical() {
+    let mut config = moving_config(40);
+    let motion = config.deformation.as_mut().unwrap();
+    // Photographs of one place: what the network has learned in a few steps moves by less.
+    (motion.rest_from, motion.rest_within) = (12, 0.5);
+    let place = moving_place();
+    let mut trainer = start(&place, &config).unwrap();
+    trainer.advance(u32::MAX, &mut |_| ()).unwrap();
+    let record = trainer.summary().rest.unwrap();
+    let splats = u64::from(trainer.splat_count());
+    assert!(record.resting > 0 && record.spared > 0, "{record:?}");
+    assert!(record.spared < record.evaluations && record.evaluations <= 30 * splats, "{record:?}");
+    let expected = trainer.scene().unwrap();
+    for (stops, save) in [(&[29][..], false), (&[17, 16][..], true)] {
+        assert_eq!(run(&moving_place(), &config, stops, save), expected, "{stops:?}");
+    }
+    let all = TrainingConfig {
+        deformation: config
+            .deformation
+            .map(|motion| DeformationTraining { rest_within: 0.0, ..motion }),
+        ..config
+    };
+    assert_ne!(run(&moving_place(), &all, &[], false), expected);
+}
+
+#[test]
 fn a_roll_back_restores_the_network() {
     let (place, config) = (moving_place(), moving_config(40));
     let mut trainer = start(&place, &config).unwrap();
