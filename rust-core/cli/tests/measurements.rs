@@ -2,6 +2,8 @@
 
 mod support;
 
+use std::path::Path;
+
 use serde_json::Value;
 use support::{json, refusal, succeed, thinned_scene};
 
@@ -121,4 +123,33 @@ fn a_report_has_a_row_per_variant_in_all_three_forms() {
     }
     let points = svg.matches("<circle").count();
     assert!(points >= rows.len(), "{points} points for {} rows", rows.len());
+}
+
+#[test]
+fn training_is_timed_beside_the_reference_and_what_moves_trains_its_network() {
+    let photographs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/sample-dataset");
+    let bench = |options: &[&str]| {
+        let mut arguments = arguments!["bench", "train", &photographs, "--json"].to_vec();
+        arguments.extend(["--downscale", "4", "--random-splats", "60"].map(Into::into));
+        arguments.extend(["--steps", "6", "--reference-steps", "3"].map(Into::into));
+        arguments.extend(options.iter().map(Into::into));
+        json(&arguments)
+    };
+    let psnr = |report: &Value| {
+        let early = |row: &Value| row["psnr_at_reference_steps"].as_f64().unwrap();
+        report["rows"].as_array().unwrap().iter().map(early).collect::<Vec<_>>()
+    };
+    for options in [&["--static"][..], &[]] {
+        let report = bench(options);
+        assert_eq!((&report["splats"], &report["reference_steps"]), (&60.into(), &3.into()));
+        assert_eq!(report["rows"][0]["variant"], "f64 reference");
+        let rows = report["rows"].as_array().unwrap();
+        assert!(rows.len() >= 2, "{report}");
+        assert!(rows.iter().all(|row| row["steps_per_second"].as_f64().unwrap() > 0.0));
+        let levels = psnr(&report);
+        // Three steps of Adam from the same start: what rounds to either side of zero moves by a rate.
+        assert!(levels.iter().all(|psnr| (psnr - levels[0]).abs() < 1e-2), "{levels:?}");
+    }
+    let (at_rest, moving) = (psnr(&bench(&["--static"])), psnr(&bench(&[])));
+    assert_ne!(at_rest, moving);
 }

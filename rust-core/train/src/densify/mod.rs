@@ -15,7 +15,7 @@ pub use correction::{MAX_COPIES, logit, relocation_correction};
 pub use noise::PositionNoise;
 pub(crate) use relocation::{dead_logit, lowest_logit};
 pub use relocation::{grow, grown_count, relocate_dead};
-pub use removal::{RemovalCosts, keep, random_signs};
+pub use removal::{RemovalCosts, random_signs, thin};
 pub(crate) use sampling::{OpacityUnits, weight_bits, weight_shift};
 
 use crate::TrainingState;

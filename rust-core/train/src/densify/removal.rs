@@ -103,8 +103,8 @@ impl RemovalCosts {
     }
 }
 
-/// Keeps some of the splats, with their moments. All of them move again.
-pub fn keep(state: &mut TrainingState, kept: &[u32]) {
+/// Leaves only the splats `kept`, with their moments. All of them move again.
+pub fn thin(state: &mut TrainingState, kept: &[u32]) {
     state.resting = None;
     for part in [&mut state.splats, &mut state.first_moments, &mut state.second_moments] {
         *part = part.gather(kept);

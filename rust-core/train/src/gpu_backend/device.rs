@@ -1,7 +1,9 @@
 //! What lives on the device: what every run shares, and what belongs to the splats of one.
 
-use trapeze_gpu::compute::whole;
-use trapeze_gpu::{DifferentiableRenderer, Gpu, GpuError, ParameterBuffers};
+use trapeze_gpu::compute::{read, whole};
+use trapeze_gpu::{
+    DifferentiableRenderer, ForwardSettings, Gpu, GpuError, ImageGradientBuffers, ParameterBuffers,
+};
 use trapeze_scene::ShDegree;
 
 use super::densify_stage::DensifyStage;
@@ -16,6 +18,7 @@ use super::targets::GpuTarget;
 use super::update_stage::UpdateStage;
 use super::{GpuBackendOptions, timing};
 use crate::TrainingState;
+use crate::backend::TrainingView;
 use crate::schedule::StepPlan;
 
 /// What does not depend on the splats.
@@ -141,6 +144,27 @@ impl Run {
         let canonical = &self.splats.parameters;
         let Some(network) = &mut self.network else { return Ok(canonical.clone()) };
         network.record_forward(&mut timing::begin(encoder, "deform", None), canonical, time)
+    }
+
+    /// Waits for the gradient by opacity logits of a view, in the buffers of a step: the image's gradient
+    /// in that of the loss, which has its size.
+    pub(super) fn opacity_gradient(
+        &mut self,
+        device: &mut DeviceSide,
+        view: &TrainingView,
+        settings: ForwardSettings,
+        by_image: &[[f32; 4]],
+    ) -> Result<Vec<f32>, GpuError> {
+        let mut encoder = device.gpu.device().create_command_encoder(&Default::default());
+        let posed = self.record_pose(&mut encoder, view.time)?;
+        device.submit(encoder);
+        self.renderer.forward_and_wait(&posed, &view.camera, settings)?;
+        device.gpu.write(&device.loss.gradient, by_image)?;
+        let by_image = ImageGradientBuffers { color: &device.loss.gradient, expected_depth: None };
+        let mut encoder = device.gpu.device().create_command_encoder(&Default::default());
+        self.renderer.backward(&mut encoder, &posed, by_image, &self.splats.gradients)?;
+        device.submit(encoder);
+        read(&device.gpu, &self.splats.gradients.opacity_logits, self.splats.count().into())
     }
 
     /// Records more SH bands, where `degree` has them.

@@ -316,14 +316,20 @@ impl TrainingBackend for GpuBackend {
         by_image: &[[f32; 4]],
     ) -> Result<Vec<f32>, BackendError> {
         self.settle()?;
+        let size = [view.camera.width, view.camera.height];
+        let pixels = size[0] as usize * size[1] as usize;
+        if by_image.len() != pixels {
+            let reason = format!("expected {pixels} pixels, found {}", by_image.len());
+            return Err(BackendError::View { id: view.id, reason });
+        }
         let Some(run) = &mut self.run else { return Ok(Vec::new()) };
-        let forward = ForwardSettings { max_sh_degree: sh_degree, depth: false };
-        let mut encoder = self.device.gpu.device().create_command_encoder(&Default::default());
-        let posed = run.record_pose(&mut encoder, view.time).map_err(backend_error)?;
-        self.device.submit(encoder);
-        let drawn = run.renderer.forward_and_wait(&posed, &view.camera, forward);
-        let gradient = drawn.and_then(|_| run.renderer.backward_and_wait(&posed, by_image, None));
-        gradient.map(|splats| splats.opacity_logits).map_err(backend_error)
+        let device = &mut self.device;
+        let replaced = device.loss.prepare(&device.gpu, size).map_err(backend_error)?;
+        if run.bind_image(device, replaced) {
+            self.targets.unbind();
+        }
+        let settings = ForwardSettings { max_sh_degree: sh_degree, depth: false };
+        run.opacity_gradient(device, view, settings, by_image).map_err(backend_error)
     }
 
     fn render(&mut self, camera: &Camera, settings: &FrameSettings) -> Result<Frame, BackendError> {

@@ -83,6 +83,7 @@ pub struct Search {
     /// SH degree.
     pub sh_degree: u32,
     /// Whether no splats are left that are not worth keeping.
+    #[serde(default)]
     pub is_thin: bool,
     /// Every trial, in order.
     pub trials: Vec<Trial>,

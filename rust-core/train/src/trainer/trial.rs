@@ -5,7 +5,7 @@ use super::{Event, TrainError, Trainer};
 use crate::backend::TrainingBackend;
 use crate::checkpoint::Checkpoint;
 use crate::config::Background;
-use crate::densify::{RemovalCosts, keep, random_signs};
+use crate::densify::{RemovalCosts, random_signs, thin};
 use crate::evaluation::psnr_of;
 
 /// Backward passes that tell what splats are worth.
@@ -109,7 +109,7 @@ impl<B: TrainingBackend> Trainer<B> {
                 trial.without = Some(Box::new(branch));
                 let mut start = self.anchor.get()?;
                 if let Some(kept) = trial.kept.take() {
-                    keep(&mut start.state, &kept);
+                    thin(&mut start.state, &kept);
                 }
                 self.trial = Some(trial);
                 self.enter(start)

@@ -14,7 +14,7 @@ use trapeze_train::config::TrainingConfig;
 use trapeze_train::evaluation::evaluate;
 use trapeze_train::{
     CpuBackend, CpuBackendOptions, GpuBackend, GpuBackendOptions, GpuStepTimes, ReferenceBackend,
-    Trainer, TrainerOptions,
+    Trainer, TrainerOptions, background_for_training, deformation_for_training,
 };
 
 use super::super::render::open_gpu;
@@ -42,6 +42,9 @@ pub(crate) struct Arguments {
     /// Random splats to start from where a dataset has no points.
     #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..))]
     random_splats: u32,
+    /// Train a static scene, whatever the times of the photographs.
+    #[arg(long = "static")]
+    rests: bool,
     /// Seed of every random choice.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -218,6 +221,10 @@ fn measured<B: TrainingBackend>(
     config.seed = arguments.seed;
     config.initial.random_count = arguments.random_splats;
     config.checkpoint_interval = u32::MAX;
+    config.background = background_for_training(dataset)?;
+    if !arguments.rests {
+        config.deformation = deformation_for_training(dataset, config.steps)?;
+    }
     let options = TrainerOptions { report_interval: u32::MAX, ..TrainerOptions::default() };
     let mut trainer = Trainer::start(dataset, config, backend, options)?;
     let mut times = Vec::new();

@@ -21,7 +21,7 @@ pub(crate) struct TrainingArguments {
     #[arg(long, default_value_t = 7_000, value_parser = clap::value_parser!(u32).range(1..))]
     steps: u32,
     /// Grow to at most N splats; `auto` grows only while training views that are set aside for it say
-    /// that it pays.
+    /// that it pays, and then drops the splats that they would not miss.
     #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = parse_budget)]
     max_splats: SplatBudget,
     /// With `--max-splats auto`: what a doubling of the scene's numbers has to bring, in dB of PSNR on
