@@ -13,7 +13,8 @@
 //!
 //! A scene that moves has two passes more: the network deforms the splats before they are drawn, and
 //! takes the gradients back to the canonical splats and to its weights
-//! ([`trapeze_gpu::DifferentiableDeformation`]); Adam updates both.
+//! ([`trapeze_gpu::DifferentiableDeformation`]); Adam updates both. What waits there is a look at the
+//! splats that may rest ([`look`](TrainingBackend::look)), a few dozen times in a run.
 //!
 //! The twins of the kernels are the CPU's: tests compare each of them.
 
