@@ -138,7 +138,8 @@ impl TrainingConfig {
 }
 
 impl Densification {
-    fn is_due(&self, step: u32) -> bool {
+    /// Whether the set changes before step `step`.
+    pub(crate) fn is_due(&self, step: u32) -> bool {
         step >= self.start && step < self.stop && step > 0 && step.is_multiple_of(self.interval)
     }
 }

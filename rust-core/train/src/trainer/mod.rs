@@ -27,6 +27,7 @@
 mod anchor;
 mod error;
 mod event;
+mod growth;
 mod health;
 mod initial;
 mod lifecycle;

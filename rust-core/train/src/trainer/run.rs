@@ -128,14 +128,13 @@ impl<B: TrainingBackend> Trainer<B> {
         if self.progress.search.is_none() {
             return plan;
         }
-        let begins = self.step == self.anchor.step();
-        match self.change() {
-            Some(Proposal::Splats(count)) if begins => Some(DensifyPlan {
+        match self.trial.as_ref().and_then(|trial| trial.count_at(self.step)) {
+            Some(count) => Some(DensifyPlan {
                 seed: self.config.seed,
                 dead_opacity: self.config.densification?.dead_opacity,
                 count,
             }),
-            _ => plan.map(|plan| DensifyPlan { count, ..plan }),
+            None => plan.map(|plan| DensifyPlan { count, ..plan }),
         }
     }
 

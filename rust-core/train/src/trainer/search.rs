@@ -10,12 +10,14 @@
 //! scene's numbers, or cost less than that per halving.
 //!
 //! First the set grows, in a stride twice as long where growth brought far more than it had to, until
-//! it was refused twice in a row. Growth duplicates what is opaque, not what will be good for
-//! something: then those splats leave that the image would miss least
-//! ([`RemovalCosts`](crate::densify::RemovalCosts)), as many as the same price says, until hardly any
-//! are to go or their leaving is refused. Last come bands, for a set where each splat has more to
-//! show. Then, or when the set has to stay as it is, the search ends and the validation views are
-//! trained on.
+//! it was refused twice in a row. A branch takes its stride over the first half of its trial, by a
+//! little in every densification step, as a run without a search grows.
+//!
+//! Growth duplicates what is opaque, not what will be good for something: then those splats leave that
+//! the image would miss least ([`RemovalCosts`](crate::densify::RemovalCosts)), as many as the same
+//! price says, until hardly any are to go or their leaving is refused. Last come bands, for a set where
+//! each splat has more to show. Then, or when the set has to stay as it is, the search ends and the
+//! validation views are trained on.
 //!
 //! The branch that is kept is the run: no step of it is lost. Decisions depend on steps, never on
 //! the clock, and every one is kept with its evidence.

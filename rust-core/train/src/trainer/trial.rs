@@ -1,5 +1,6 @@
 //! Trials of a search: two branches from one state.
 
+use super::growth::Growth;
 use super::search::{Direction, Proposal, Trial};
 use super::{Event, TrainError, Trainer};
 use crate::backend::TrainingBackend;
@@ -20,6 +21,8 @@ pub(super) struct RunningTrial {
     pub(super) end: u32,
     /// The splats that go on in the branch with the change, if not all.
     kept: Option<Vec<u32>>,
+    /// How the branch with the change comes to its number of splats, where that is the change.
+    growth: Option<Growth>,
     /// The end of the branch that stayed as it was; from then on the branch with the change runs.
     without: Option<Box<Branch>>,
 }
@@ -31,9 +34,15 @@ struct Branch {
 }
 
 impl RunningTrial {
-    /// The change that the present branch makes at its start.
+    /// The change that the present branch makes.
     pub(super) fn change(&self) -> Option<Proposal> {
         self.without.as_ref().map(|_| self.proposal)
+    }
+
+    /// The number of splats of the present branch from `step` on, if the trial changes it there.
+    pub(super) fn count_at(&self, step: u32) -> Option<u32> {
+        self.without.as_ref()?;
+        self.growth.as_ref()?.at(step)
     }
 }
 
@@ -68,8 +77,19 @@ impl<B: TrainingBackend> Trainer<B> {
             return Ok(());
         }
         let end = self.step + trial_steps;
-        self.trial = proposal.map(|proposal| RunningTrial { proposal, end, kept, without: None });
+        self.trial = proposal.map(|proposal| {
+            let growth = self.growth(proposal);
+            RunningTrial { proposal, end, kept, growth, without: None }
+        });
         Ok(())
+    }
+
+    /// How a trial that begins here comes to the splats it proposes. One that thins has left some
+    /// behind before its first step, and grows by none.
+    fn growth(&self, proposal: Proposal) -> Option<Growth> {
+        let Proposal::Splats(splats) = proposal else { return None };
+        let present = self.backend.splat_count().min(splats);
+        Some(Growth::new(&self.config, self.step, (present, splats)))
     }
 
     /// Goes on to what comes after thinning.

@@ -76,11 +76,14 @@ fn interruptions_around_a_fault_change_nothing() {
 
 #[test]
 fn a_search_ends_bit_identical_whenever_it_is_interrupted() {
-    let config = super::searches::searching(280);
-    let expected = uninterrupted(&config, None);
-    for save in [false, true] {
-        for stops in [&[25][..], &[39, 41], &[60, 5, 90], &[300]] {
-            assert_eq!(interrupted(&config, None, stops, save), expected, "{save} {stops:?}");
+    use super::searches::{frequently_searching, searching};
+    for config in [searching(280), frequently_searching(280)] {
+        let expected = uninterrupted(&config, None);
+        for save in [false, true] {
+            // 84: a branch of the second trial, which begins at step 40, grows at its steps 40 to 48.
+            for stops in [&[25][..], &[39, 41], &[60, 5, 90], &[84], &[300]] {
+                assert_eq!(interrupted(&config, None, stops, save), expected, "{save} {stops:?}");
+            }
         }
     }
 }

@@ -16,6 +16,15 @@ pub(super) fn searching(steps: u32) -> TrainingConfig {
     config
 }
 
+/// The same with several densification steps in every trial.
+pub(super) fn frequently_searching(steps: u32) -> TrainingConfig {
+    let mut config = searching(steps);
+    if let Some(densification) = &mut config.densification {
+        densification.interval = steps / 112;
+    }
+    config
+}
+
 fn trials(events: &[Event]) -> Vec<Trial> {
     let trial = |event: &Event| match event {
         Event::Trial(trial) => Some(*trial),
@@ -51,6 +60,30 @@ fn what_pays_is_kept_and_what_does_not_is_undone() {
     assert_eq!((trainer.splat_count(), trainer.step()), (search.splats, 560));
     assert!(events.iter().any(|event| matches!(event, Event::SearchEnded { .. })));
     assert_eq!(trainer.summary().search, Some(search));
+}
+
+#[test]
+fn a_branch_grows_by_a_little_at_a_time_and_is_whole_for_half_of_its_trial() {
+    let place = Workplace::new();
+    let mut trainer = place.start(frequently_searching(560), Mosaic::default());
+    let mut grown = 0;
+    while !trainer.is_finished() {
+        let before = trainer.splat_count();
+        trainer.advance(1, &mut |_| ()).unwrap();
+        let Some(trial) = &trainer.trial else { continue };
+        let Some(Proposal::Splats(proposed)) = trial.change() else { continue };
+        let begin = trial.end - trainer.config.trial_steps();
+        let (step, splats) = (trainer.step, trainer.splat_count());
+        let present = trainer.progress.search.as_ref().unwrap().splats;
+        if proposed < present || step <= begin {
+            continue;
+        }
+        // At most a doubled stride, times four, in four parts.
+        assert!(splats >= present && splats <= proposed && splats <= before * 3 / 2 + 1);
+        assert!(2 * (step - begin) <= 40 || splats == proposed, "{splats} of {proposed}");
+        grown += u32::from(step == begin + 40 - 1);
+    }
+    assert!(grown >= 3, "{grown}");
 }
 
 #[test]
