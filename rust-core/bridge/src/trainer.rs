@@ -16,7 +16,7 @@ use trapeze_train::config::{Background, TrainingConfig};
 use trapeze_train::trainer::{Event, Report};
 use trapeze_train::{
     TrainerOptions, background_for_training, deformation_for_training, prepare_for_motion,
-    splat_ceiling,
+    search_for_training,
 };
 
 use crate::dataset::Dataset;
@@ -112,11 +112,11 @@ fn configuration(
 ) -> Result<TrainingConfig, Failure> {
     let steps = parameters.steps;
     let degree = ShDegree::try_from(parameters.harmonics_degree)?;
+    let photographs = dataset.shared();
     let config = match parameters.max_splats {
-        0 => TrainingConfig::automatic(steps, splat_ceiling(memory.unwrap_or(u64::MAX), degree)),
+        0 => search_for_training(photographs, steps, memory.unwrap_or(u64::MAX), degree),
         splats => TrainingConfig::growing(steps, splats),
     };
-    let photographs = dataset.shared();
     // Geographic captures are trained as if nothing moved: the network sees coordinates near 0 only.
     let deformation = match photographs.origin {
         DVec3::ZERO => deformation_for_training(photographs, steps)?,

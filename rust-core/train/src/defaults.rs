@@ -5,7 +5,7 @@ use trapeze_formats::dataset::{Dataset, load_image};
 use trapeze_scene::ShDegree;
 
 use crate::TrainingState;
-use crate::config::{Background, DeformationTraining, InitialSplats, TrainingConfig};
+use crate::config::{Background, BudgetSearch, DeformationTraining, InitialSplats, TrainingConfig};
 
 /// The most splats that a search tries, if the memory allows.
 const CEILING: u64 = 2_000_000;
@@ -13,9 +13,34 @@ const CEILING: u64 = 2_000_000;
 /// working memory.
 const STATE_SHARE: u64 = 8;
 
-/// Up to how many splats a search may go in `memory` bytes.
+/// Values of the photographs that a search asks for by each number of a scene, at least: with one,
+/// there is a scene for any photographs, and what is true of the validation views is chance.
+const VALUES_BY_NUMBER: u64 = 2;
+
+/// The settings of a run of `steps` steps that finds how many splats and bands of up to `sh_degree`
+/// the photographs are worth, in `memory` bytes.
 #[must_use]
-pub fn splat_ceiling(memory: u64, sh_degree: ShDegree) -> u32 {
+pub fn search_for_training(
+    dataset: &Dataset,
+    steps: u32,
+    memory: u64,
+    sh_degree: ShDegree,
+) -> TrainingConfig {
+    let values = |index: usize| {
+        let camera = &dataset.views[index].camera;
+        3 * u64::from(camera.width) * u64::from(camera.height)
+    };
+    let values: u64 = dataset.training_views().map(values).sum();
+    let most_numbers = Some(values / VALUES_BY_NUMBER);
+    TrainingConfig {
+        search: Some(BudgetSearch { most_numbers, ..BudgetSearch::default() }),
+        sh_degree: sh_degree as u32,
+        ..TrainingConfig::automatic(steps, splat_ceiling(memory, sh_degree))
+    }
+}
+
+/// Up to how many splats a search may go in `memory` bytes.
+fn splat_ceiling(memory: u64, sh_degree: ShDegree) -> u32 {
     let fitting = memory / STATE_SHARE / TrainingState::bytes(1, sh_degree);
     // In powers of two: the same on machines that differ by a few megabytes.
     let power = fitting.max(1).ilog2();

@@ -45,7 +45,7 @@ pub mod trainer;
 
 pub use cpu_backend::{CpuBackend, CpuBackendOptions, CpuStepTimes};
 pub use defaults::{
-    background_for_training, deformation_for_training, prepare_for_motion, splat_ceiling,
+    background_for_training, deformation_for_training, prepare_for_motion, search_for_training,
 };
 pub use gpu_backend::{GpuBackend, GpuBackendOptions, GpuMemoryPlan, GpuStepTimes};
 pub use motion::{MotionSummary, with_measured_motion};
@@ -53,4 +53,5 @@ pub use network::{TrainedNetwork, network_parameters, set_network_parameters};
 pub use parameters::{ParameterGroup, zeros_like};
 pub use reference_backend::ReferenceBackend;
 pub use state::TrainingState;
+pub(crate) use state::numbers_of_splat;
 pub use trainer::{TrainError, Trainer, TrainerOptions};

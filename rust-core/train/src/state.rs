@@ -85,11 +85,19 @@ impl TrainingState {
         Ok(())
     }
 
+    /// Bytes that a number of a splat takes: itself and two moments.
+    pub const BYTES_BY_NUMBER: u64 = 3 * 4;
+
     /// Bytes that a state of `splats` splats takes, gradients not counted.
     #[must_use]
     pub fn bytes(splats: u64, degree: ShDegree) -> u64 {
-        3 * splats * (14 + 3 * degree.rest_coefficients() as u64) * 4
+        splats * numbers_of_splat(degree) * Self::BYTES_BY_NUMBER
     }
+}
+
+/// Numbers that describe a splat: position, scales, rotation, opacity and colour.
+pub(crate) fn numbers_of_splat(degree: ShDegree) -> u64 {
+    14 + 3 * degree.rest_coefficients() as u64
 }
 
 #[cfg(test)]

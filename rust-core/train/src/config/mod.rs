@@ -133,11 +133,21 @@ pub struct BudgetSearch {
     pub trial: f64,
     /// Every how many-th training view validates until the search has ended.
     pub validation: u32,
+    /// Nothing is tried that describes the scene with more numbers than this; `None` tries whatever
+    /// `densification.max_splats` allows.
+    pub most_numbers: Option<u64>,
 }
 
 impl Default for BudgetSearch {
     fn default() -> Self {
-        Self { least_gain: 0.1, growth: 0.4, thinning: true, trial: 1.0 / 14.0, validation: 8 }
+        Self {
+            least_gain: 0.1,
+            growth: 0.4,
+            thinning: true,
+            trial: 1.0 / 14.0,
+            validation: 8,
+            most_numbers: None,
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use trapeze_scene::ShDegree;
 use super::TrainError;
 use super::views::Views;
 use crate::backend::TrainingBackend;
-use crate::config::TrainingConfig;
+use crate::config::{BudgetSearch, TrainingConfig};
 use crate::{TrainedNetwork, TrainingState};
 
 const MEGABYTE: u64 = 1 << 20;
@@ -34,21 +34,34 @@ impl TrainingMemory {
         photograph_budget: u64,
     ) -> Self {
         let cap = config.densification.map_or(0, |densification| densification.max_splats);
-        let splats = cap.max(initial);
+        let most = searched(config).map_or(u32::MAX, |search| search.most_splats());
+        let splats = cap.min(most).max(initial);
         let degree = ShDegree::try_from(config.sh_degree).unwrap_or(ShDegree::Three);
         let is_moving = config.deformation.is_some();
         let network = if is_moving { TrainedNetwork::bytes() } else { 0 };
-        let state = TrainingState::bytes(splats.into(), degree) + network;
+        let state = Self::of_state(config, splats, degree) + network;
         // Three bytes a pixel, in the backend; what is decoded ahead comes on top.
         let photographs = 3 * views.pixels();
         Self {
             parameters: state + state / 3,
-            copies: if config.search.is_some() { 2 * state } else { state },
+            copies: if searched(config).is_some() { 2 * state } else { state },
             photographs: photographs.min(backend.target_budget())
                 + photographs.min(photograph_budget),
             working: backend.working_bytes(splats, views.largest())
                 + if is_moving { backend.network_working_bytes(splats) } else { 0 },
         }
+    }
+
+    /// Bytes of a state of `splats` splats, the most there will be. A search gives bands only to as many
+    /// of them as describe the scene with no more numbers than it may have; those that a run begins with
+    /// it may have in any case, without bands.
+    fn of_state(config: &TrainingConfig, splats: u32, degree: ShDegree) -> u64 {
+        let with_bands = TrainingState::bytes(splats.into(), degree);
+        let Some(most) = searched(config).and_then(|search| search.most_numbers) else {
+            return with_bands;
+        };
+        let without_bands = TrainingState::bytes(splats.into(), ShDegree::Zero);
+        with_bands.min(without_bands.max(most.saturating_mul(TrainingState::BYTES_BY_NUMBER)))
     }
 
     /// Sum of all parts.
@@ -72,4 +85,9 @@ impl TrainingMemory {
         );
         Err(TrainError::Memory { needed: megabytes(self.total()), detail, limit: limit / MEGABYTE })
     }
+}
+
+/// How the budget is searched for, if it is: only a set that changes can be searched.
+fn searched(config: &TrainingConfig) -> Option<BudgetSearch> {
+    config.search.filter(|_| config.densification.is_some())
 }

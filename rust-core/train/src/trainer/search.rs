@@ -19,6 +19,9 @@
 //! each splat has more to show. Then, or when the set has to stay as it is, the search ends and the
 //! validation views are trained on.
 //!
+//! Nothing is tried that takes more numbers than [`BudgetSearch::most_numbers`], for splats and bands
+//! alike: photographs say only so much, and what is tried is what the memory has to hold.
+//!
 //! The branch that is kept is the run: no step of it is lost. Decisions depend on steps, never on
 //! the clock, and every one is kept with its evidence.
 
@@ -27,6 +30,7 @@ use trapeze_scene::ShDegree;
 
 use crate::config::{BudgetSearch, TrainingConfig};
 use crate::densify::grown_count;
+use crate::numbers_of_splat;
 
 /// Refusals in a row after which the set grows no more: of a large stride, and of the smallest.
 const REFUSALS_OF_GROWTH: usize = 2;
@@ -108,7 +112,8 @@ impl Search {
         if !config.has_time_for_trials(step, 1) {
             return None;
         }
-        let grown = self.grown(&settings, densification.max_splats);
+        let most = settings.most_splats().min(densification.max_splats);
+        let grown = self.grown(&settings, most);
         let has_time_to_grow = config.has_time_for_trials(step, 1 + TRIALS_AFTER_GROWTH);
         if grown > self.splats && has_time_to_grow && !self.has_grown() {
             return Some(Direction::Change(Proposal::Splats(grown)));
@@ -117,8 +122,10 @@ impl Search {
             return Some(Direction::FewerSplats);
         }
         let is_refused = self.trials.iter().any(|trial| trial.is_band() && !trial.kept);
-        let has_more_bands = self.sh_degree < config.sh_degree && !is_refused;
-        has_more_bands.then_some(Direction::Change(Proposal::ShDegree(self.sh_degree + 1)))
+        let degree = self.sh_degree + 1;
+        let has_more_bands = degree <= config.sh_degree
+            && settings.most_numbers.is_none_or(|most| numbers(self.splats, degree) <= most);
+        (has_more_bands && !is_refused).then_some(Direction::Change(Proposal::ShDegree(degree)))
     }
 
     /// Whether growth is over: refused in its long stride and in its short one, or already followed
@@ -147,8 +154,9 @@ impl Search {
             Proposal::Splats(splats) => (splats, self.sh_degree),
             Proposal::ShDegree(degree) => (self.splats, degree),
         };
-        let ratio = numbers(splats, degree) / numbers(self.splats, self.sh_degree);
-        settings.least_gain * ratio.log2()
+        let [changed, present] = [(splats, degree), (self.splats, self.sh_degree)]
+            .map(|(splats, degree)| numbers(splats, degree) as f64);
+        settings.least_gain * (changed / present).log2()
     }
 
     /// Adopts the proposal of a trial, or not, and keeps the evidence.
@@ -185,9 +193,17 @@ impl Trial {
 }
 
 /// Numbers that describe a scene.
-fn numbers(splats: u32, sh_degree: u32) -> f64 {
+fn numbers(splats: u32, sh_degree: u32) -> u64 {
     let degree = ShDegree::try_from(sh_degree).unwrap_or(ShDegree::Three);
-    f64::from(splats) * (14 + 3 * degree.rest_coefficients()) as f64
+    u64::from(splats) * numbers_of_splat(degree)
+}
+
+impl BudgetSearch {
+    /// The most splats that are tried: none of them has an SH band.
+    pub(super) fn most_splats(&self) -> u32 {
+        let most = self.most_numbers.map(|most| most / numbers_of_splat(ShDegree::Zero));
+        most.map_or(u32::MAX, |most| most.min(u32::MAX.into()) as u32)
+    }
 }
 
 impl TrainingConfig {
@@ -230,9 +246,13 @@ mod tests {
     /// Runs the search with a rule that says what pays; what is worth keeping is half the splats, until
     /// that is fewer than 6 000.
     fn run(pays: impl Fn(&Search, Proposal) -> bool) -> Search {
+        run_with(&config(), pays)
+    }
+
+    fn run_with(config: &TrainingConfig, pays: impl Fn(&Search, Proposal) -> bool) -> Search {
         let mut search = Search::new(10_000);
-        let step = config().densification.unwrap().start;
-        while let Some(direction) = search.next(&config(), step) {
+        let step = config.densification.unwrap().start;
+        while let Some(direction) = search.next(config, step) {
             let proposal = match direction {
                 Direction::Change(proposal) => proposal,
                 Direction::FewerSplats if search.splats / 2 >= 6_000 => {
@@ -278,6 +298,21 @@ mod tests {
         let thinned = Proposal::Splats(9_800);
         assert_eq!(tried, [first, second, third, fourth, fifth, thinned, Proposal::ShDegree(1)]);
         assert_eq!((search.splats, search.is_thin), (19_600, true));
+    }
+
+    #[test]
+    fn nothing_is_tried_that_takes_more_numbers_than_allowed() {
+        // As many as 30 000 splats have without bands.
+        let allowed = BudgetSearch { most_numbers: Some(420_000), ..BudgetSearch::default() };
+        let config = TrainingConfig { search: Some(allowed), ..config() };
+        let search = run_with(&config, |_, _| true);
+        let splats = search.trials.iter().map(|trial| trial.splats);
+        assert!(splats.eq([10_000, 14_000, 27_440, 30_000, 15_000, 7_500, 7_500]));
+        // 7 500 splats of degree 2 have 285 000, of degree 3 442 500.
+        assert_eq!((search.splats, search.sh_degree), (7_500, 2));
+        let none = BudgetSearch { most_numbers: Some(0), ..BudgetSearch::default() };
+        let config = TrainingConfig { search: Some(none), ..config };
+        assert_eq!(Search::new(10_000).next(&config, 500), Some(Direction::FewerSplats));
     }
 
     #[test]

@@ -7,7 +7,7 @@ use trapeze_formats::dataset::Dataset;
 use trapeze_scene::ShDegree;
 use trapeze_train::config::{Background, TrainingConfig};
 use trapeze_train::{
-    background_for_training, deformation_for_training, prepare_for_motion, splat_ceiling,
+    background_for_training, deformation_for_training, prepare_for_motion, search_for_training,
 };
 
 use super::settings::overridden;
@@ -78,7 +78,7 @@ impl TrainingArguments {
             SplatBudget::Most(splats) => TrainingConfig::growing(self.steps, splats),
             SplatBudget::Auto => {
                 let degree = ShDegree::try_from(self.sh_degree)?;
-                TrainingConfig::automatic(self.steps, splat_ceiling(memory, degree))
+                search_for_training(dataset, self.steps, memory, degree)
             }
         };
         if let (Some(search), Some(least_gain)) = (&mut config.search, self.least_gain) {

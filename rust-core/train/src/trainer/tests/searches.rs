@@ -1,7 +1,10 @@
 //! Searching for the budget.
 
+use trapeze_scene::ShDegree;
+
 use super::*;
 use crate::config::BudgetSearch;
+use crate::search_for_training;
 use crate::trainer::{Proposal, Trial};
 
 /// 12 splats, far fewer than the 192 pixels need, up to 400.
@@ -100,6 +103,23 @@ fn validation_views_are_trained_on_only_after_the_search() {
     finish(&mut trainer);
     let shown = &trainer.backend().shown;
     assert!(validation.iter().all(|id| shown.contains(id)));
+}
+
+#[test]
+fn the_photographs_bound_what_is_tried_and_the_estimate_of_the_memory() {
+    let place = Workplace::new();
+    let mut config = search_for_training(&place.dataset, 560, 1 << 34, ShDegree::Three);
+    // 15 training views of 16 × 12 pixels with 3 values each; 14 numbers a splat.
+    assert_eq!(config.search.unwrap().most_numbers, Some(4_320));
+    let estimate =
+        |config: &TrainingConfig| place.start(config.clone(), Mosaic::default()).memory();
+    config.initial.random_count = 40;
+    let state = 12 * 4_320;
+    assert_eq!(estimate(&config).parameters, state + state / 3);
+    // More than they are worth from the beginning on: these stay, and get no bands.
+    config.initial.random_count = 1_000;
+    let state = 12 * 14 * 1_000;
+    assert_eq!(estimate(&config).parameters, state + state / 3);
 }
 
 #[test]
