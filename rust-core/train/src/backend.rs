@@ -146,12 +146,13 @@ pub trait TrainingBackend {
         u64::MAX
     }
 
-    /// Replaces the resident state. Reports of earlier steps are dropped. Photographs stay.
+    /// Replaces the resident state. Reports of earlier steps are dropped. Photographs stay. The state
+    /// is given away: a copy of it would be among the largest things of a run.
     ///
     /// # Errors
     /// [`BackendError::OutOfMemory`] when `capacity` splats and their optimiser do not fit;
     /// `capacity` is the largest number of splats that the run will ask for.
-    fn load(&mut self, state: &TrainingState, capacity: u32) -> Result<(), BackendError>;
+    fn load(&mut self, state: TrainingState, capacity: u32) -> Result<(), BackendError>;
 
     /// A copy of the resident state after every step that was asked for. Waits.
     ///

@@ -103,8 +103,8 @@ fn to_single(gradients: &[reference::SplatParameters], splats: &Splats) -> Splat
 }
 
 impl TrainingBackend for ReferenceBackend {
-    fn load(&mut self, state: &TrainingState, _capacity: u32) -> Result<(), BackendError> {
-        self.state.clone_from(state);
+    fn load(&mut self, state: TrainingState, _capacity: u32) -> Result<(), BackendError> {
+        self.state = state;
         self.reports.clear();
         Ok(())
     }
@@ -209,7 +209,7 @@ mod tests {
         }
         let state = TrainingState { network: Some(trained), ..TrainingState::new(splats) };
         let mut backend = ReferenceBackend::default();
-        backend.load(&state, 3).unwrap();
+        backend.load(state, 3).unwrap();
         let eye = DVec3::new(0.2, -0.1, -4.0);
         let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::NEG_Y, 0.7, SIZE);
         (backend, TrainingView { id: 0, camera, time: 0.4 })

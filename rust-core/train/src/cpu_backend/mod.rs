@@ -194,15 +194,15 @@ impl TrainingBackend for CpuBackend {
         self.options.target_budget as u64
     }
 
-    fn load(&mut self, state: &TrainingState, capacity: u32) -> Result<(), BackendError> {
-        let (needed, available) = (Self::splat_bytes(state, capacity), self.options.splat_budget);
+    fn load(&mut self, state: TrainingState, capacity: u32) -> Result<(), BackendError> {
+        let (needed, available) = (Self::splat_bytes(&state, capacity), self.options.splat_budget);
         if needed > available {
             let what =
                 format!("{} splats and their optimiser", capacity.max(state.splats.len() as u32));
             return Err(BackendError::OutOfMemory { what, needed, available });
         }
-        self.state.clone_from(state);
         self.renderer.set_resting(state.resting.clone());
+        self.state = state;
         self.reports.clear();
         Ok(())
     }

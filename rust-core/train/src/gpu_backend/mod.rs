@@ -219,7 +219,7 @@ impl TrainingBackend for GpuBackend {
         self.options.target_budget
     }
 
-    fn load(&mut self, state: &TrainingState, capacity: u32) -> Result<(), BackendError> {
+    fn load(&mut self, state: TrainingState, capacity: u32) -> Result<(), BackendError> {
         self.log.clear();
         self.ready.clear();
         let DeviceSide { gpu, reports, .. } = &mut self.device;
@@ -233,7 +233,7 @@ impl TrainingBackend for GpuBackend {
         let plan = self.plan(capacity, degree, network).map_err(backend_error)?;
         plan.check(capacity, self.options.memory_budget)?;
         let last = self.run.take();
-        let loaded = device::load(&mut self.device, last, state, capacity, &self.options);
+        let loaded = device::load(&mut self.device, last, &state, capacity, &self.options);
         self.run = Some(loaded.map_err(backend_error)?);
         self.targets.unbind();
         self.step = state.step;

@@ -40,6 +40,7 @@ impl Anchor {
         }
     }
 
+    /// The good state.
     pub(super) fn get(&self) -> Result<Checkpoint, TrainError> {
         match self {
             Self::Folder(folder, step) => Ok(folder.load(*step)?),

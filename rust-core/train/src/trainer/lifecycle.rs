@@ -91,8 +91,9 @@ impl<B: TrainingBackend> Trainer<B> {
     /// Makes a checkpoint the present state.
     pub(super) fn enter(&mut self, checkpoint: Checkpoint) -> Result<(), TrainError> {
         let capacity = self.capacity(&checkpoint);
-        self.backend.load(&checkpoint.state, capacity)?;
-        self.step = checkpoint.state.step;
+        let step = checkpoint.state.step;
+        self.backend.load(checkpoint.state, capacity)?;
+        self.step = step;
         // Work that was undone was work.
         let seconds = self.progress.seconds.max(checkpoint.progress.seconds);
         self.progress = Progress { seconds, ..checkpoint.progress };

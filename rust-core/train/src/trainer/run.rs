@@ -199,8 +199,8 @@ impl<B: TrainingBackend> Trainer<B> {
             return Err(TrainError::Diverged { step, fault, times, good_step: to });
         }
         let rate_factor = good.progress.rate_factor;
-        self.anchor.set(good.clone())?;
-        self.return_to(good)?;
+        self.anchor.set(good)?;
+        self.return_to(self.anchor.get()?)?;
         observer(Event::RolledBack { step, to, rate_factor, reason: fault.to_string() });
         Ok(())
     }

@@ -42,7 +42,7 @@ fn weights_that_are_not_finite_are_counted_and_spread_no_further() {
     let mut state = backend.state().unwrap();
     let trained = state.network.as_mut().unwrap();
     trained.network.hidden[3].weight[7] = f32::NAN;
-    backend.load(&state, 5).unwrap();
+    backend.load(state, 5).unwrap();
     let reports = take_steps(&mut backend, &views, &config);
     assert!(reports.iter().all(|report| report.not_finite > 0), "{reports:?}");
     let mut after = backend.state().unwrap();

@@ -68,7 +68,7 @@ fn loaded(splats: Splats, config: &TrainingConfig, views: &[TrainingView]) -> Cp
     let network = config.deformation.map(|_| TrainedNetwork::standard(config.seed));
     let capacity = splats.len() as u32;
     let state = TrainingState { network, ..TrainingState::new(splats) };
-    backend.load(&state, capacity).unwrap();
+    backend.load(state, capacity).unwrap();
     for view in views {
         let target = photograph_of(balls(view.time), &view.camera);
         backend.admit_target(view.id, Arc::new(target)).unwrap();

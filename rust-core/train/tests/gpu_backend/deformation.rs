@@ -42,7 +42,7 @@ fn a_network_learns_after_its_warm_up_and_the_loss_falls() {
             config.deformation = None;
         }
         let mut backend = backend(&gpu);
-        backend.load(&state(100), 100).unwrap();
+        backend.load(state(100), 100).unwrap();
         let views = moving_views(&mut backend);
         take_steps(&mut backend, &views, &config, 0..WARM_UP);
         let rested = backend.state().unwrap();
@@ -86,7 +86,7 @@ pub(super) fn both(gpu: &Gpu) -> [Box<dyn TrainingBackend>; 2] {
 fn one_step_of_a_moving_scene_is_that_of_the_cpu() {
     let Some(gpu) = device() else { return };
     let [cpu, gpu] = both(&gpu).map(|mut backend| {
-        backend.load(&moving_state(120), 120).unwrap();
+        backend.load(moving_state(120), 120).unwrap();
         let views = moving_views(&mut *backend);
         take_steps(&mut *backend, &views, &config(10), WARM_UP + 1..WARM_UP + 2);
         let report = backend.reports(WARM_UP + 1).unwrap()[0];
@@ -124,7 +124,7 @@ fn one_step_of_a_moving_scene_is_that_of_the_cpu() {
 fn a_short_run_of_a_moving_scene_follows_the_cpus_loss() {
     let Some(gpu) = device() else { return };
     let [cpu, gpu] = both(&gpu).map(|mut backend| {
-        backend.load(&moving_state(100), 100).unwrap();
+        backend.load(moving_state(100), 100).unwrap();
         let views = moving_views(&mut *backend);
         take_steps(&mut *backend, &views, &config(30), 0..30);
         backend.reports(29).unwrap()
@@ -147,7 +147,7 @@ fn a_steady_run_of_a_moving_scene_creates_nothing_and_waits_for_nothing() {
     let Some(gpu) = own_device() else { return };
     let mut backend = backend(&gpu);
     let config = config(100);
-    backend.load(&state(100), 100).unwrap();
+    backend.load(state(100), 100).unwrap();
     let views = moving_views(&mut backend);
     take_steps(&mut backend, &views, &config, 0..16);
     backend.reports(15).unwrap();
@@ -164,7 +164,7 @@ fn entries_that_do_not_fit_change_nothing_of_a_network() {
         let options = GpuBackendOptions { initial_entries, ..Default::default() };
         let mut backend = GpuBackend::new(&gpu, options).unwrap();
         let config = config(30);
-        backend.load(&state(100), 100).unwrap();
+        backend.load(state(100), 100).unwrap();
         let views = moving_views(&mut backend);
         let mut reports = Vec::new();
         for step in 0..24 {
@@ -189,7 +189,7 @@ fn chunks_of_splats_train_the_same_network() {
     let run = |activation_budget: u64| {
         let options = GpuBackendOptions { activation_budget, ..Default::default() };
         let mut backend = GpuBackend::new(&gpu, options).unwrap();
-        backend.load(&state(200), 200).unwrap();
+        backend.load(state(200), 200).unwrap();
         let views = moving_views(&mut backend);
         take_steps(&mut backend, &views, &config(10), WARM_UP..WARM_UP + 2);
         backend.state().unwrap().network.unwrap()
@@ -212,11 +212,11 @@ fn a_network_comes_back_as_it_was_loaded() {
         let moments = trained.first_moments.iter_mut().zip(&mut trained.second_moments);
         moments.enumerate().for_each(|(i, (m, v))| (*m, *v) = (i as f32, i as f32 + 0.5));
         let state = TrainingState { network: Some(trained), ..TrainingState::new(splats(n)) };
-        backend.load(&state, 40).unwrap();
+        backend.load(state.clone(), 40).unwrap();
         assert!(backend.state().unwrap() == state, "{seed}");
     }
     let at_rest = TrainingState::new(splats(30));
-    backend.load(&at_rest, 40).unwrap();
+    backend.load(at_rest.clone(), 40).unwrap();
     assert!(backend.state().unwrap() == at_rest);
 }
 
@@ -228,7 +228,7 @@ fn frames_and_views_of_the_device_are_posed_at_their_time() {
     let trained = moving.network.as_mut().unwrap();
     // The last hidden layer's biases reach the displacement by these weights.
     trained.network.layers_mut().nth(8).unwrap().weight.fill(0.02);
-    backend.load(&moving, 100).unwrap();
+    backend.load(moving.clone(), 100).unwrap();
     let mut frame = |time| {
         let settings = FrameSettings { time, ..FrameSettings::default() };
         backend.render(&camera(0, (40, 30)), &settings).unwrap().color
@@ -261,8 +261,8 @@ fn a_network_is_in_the_memory_plan() {
         ..Default::default()
     };
     let mut backend = GpuBackend::new(&gpu, options).unwrap();
-    let error = backend.load(&state(10), 300).unwrap_err();
+    let error = backend.load(state(10), 300).unwrap_err();
     assert!(error.to_string().contains("network"), "{error}");
-    backend.load(&TrainingState::new(splats(10)), 300).unwrap();
-    backend.load(&state(10), 299).unwrap();
+    backend.load(TrainingState::new(splats(10)), 300).unwrap();
+    backend.load(state(10), 299).unwrap();
 }

@@ -26,7 +26,7 @@ fn compare_with_removal(backend: &mut dyn TrainingBackend, name: &str) {
     let view = TrainingView { id: 0, camera: camera(1, (40, 30)), time: 0.0 };
     let signs = random_signs((1, 2, 3), 40 * 30, BACKGROUND, None);
     let load = |backend: &mut dyn TrainingBackend, splats: &Splats| {
-        backend.load(&TrainingState::new(splats.clone()), splats.len() as u32).unwrap();
+        backend.load(TrainingState::new(splats.clone()), splats.len() as u32).unwrap();
     };
     load(backend, &scene);
     let by_logits = backend.opacity_gradient(&view, ShDegree::One, &signs).unwrap();
@@ -61,7 +61,7 @@ fn a_gradient_of_another_size_is_refused() {
     let view = TrainingView { id: 7, camera: camera(1, (40, 30)), time: 0.0 };
     let state = TrainingState::new(splats(12));
     let refuses = |backend: &mut dyn TrainingBackend| {
-        backend.load(&state, 12).unwrap();
+        backend.load(state.clone(), 12).unwrap();
         backend.opacity_gradient(&view, ShDegree::Zero, &[[0.0; 4]; 3]).is_err()
     };
     assert!(refuses(&mut ReferenceBackend::default()) && refuses(&mut CpuBackend::default()));

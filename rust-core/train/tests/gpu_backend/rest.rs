@@ -18,8 +18,7 @@ fn resting(backend: &mut dyn TrainingBackend, time: f32) -> RestingSplats {
 
 /// The state after one step at `time`, with or without splats that rest as they are at that time.
 fn stepped(backend: &mut dyn TrainingBackend, time: f32, rest: bool) -> (TrainingState, f64) {
-    let state = moving_state(120);
-    backend.load(&state, 120).unwrap();
+    backend.load(moving_state(120), 120).unwrap();
     let mut views = moving_views(backend);
     let step = WARM_UP + 1;
     let mut config = config(10);
@@ -83,7 +82,7 @@ fn both_backends_agree_on_a_step_with_splats_at_rest() {
 fn both_backends_see_all_splats_at_all_times_whatever_rests() {
     let Some(gpu) = device() else { return };
     let [cpu, gpu] = both(&gpu).map(|mut backend| {
-        backend.load(&moving_state(50), 50).unwrap();
+        backend.load(moving_state(50), 50).unwrap();
         let before = backend.look(&[0.0, 0.3]).unwrap();
         let resting = resting(&mut *backend, 0.9);
         backend.rest(Some(resting)).unwrap();
@@ -107,8 +106,7 @@ fn both_backends_see_all_splats_at_all_times_whatever_rests() {
 #[test]
 fn a_change_of_the_set_ends_all_rest() {
     let check = |backend: &mut dyn TrainingBackend| {
-        let state = moving_state(120);
-        backend.load(&state, 130).unwrap();
+        backend.load(moving_state(120), 130).unwrap();
         let resting = resting(backend, 0.0);
         backend.rest(Some(resting.clone())).unwrap();
         assert_eq!(backend.state().unwrap().resting, Some(resting));

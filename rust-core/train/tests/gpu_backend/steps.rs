@@ -26,7 +26,7 @@ fn one_step_is_that_of_the_cpu() {
     let backends: [Box<dyn TrainingBackend>; 2] =
         [Box::new(CpuBackend::default()), Box::new(backend(&gpu))];
     for mut backend in backends {
-        backend.load(&TrainingState::new(splats(200)), 200).unwrap();
+        backend.load(TrainingState::new(splats(200)), 200).unwrap();
         let views = admitted(&mut *backend, 1);
         take_steps(&mut *backend, &views, &config, 0..1);
         reports.push(backend.reports(0).unwrap()[0]);
@@ -53,7 +53,7 @@ fn a_steady_run_creates_nothing_and_waits_for_nothing() {
     let Some(gpu) = own_device() else { return };
     let mut backend = backend(&gpu);
     let config = growing();
-    backend.load(&TrainingState::new(splats(200)), 400).unwrap();
+    backend.load(TrainingState::new(splats(200)), 400).unwrap();
     let views = admitted(&mut backend, 3);
     // Every view once, every change of the set and of its bands once.
     take_steps(&mut backend, &views, &config, 0..46);
@@ -80,7 +80,7 @@ fn entries_that_do_not_fit_change_nothing_of_the_result() {
         let options = GpuBackendOptions { initial_entries, ..Default::default() };
         let mut backend = GpuBackend::new(&gpu, options).unwrap();
         let config = growing();
-        backend.load(&TrainingState::new(splats(200)), 400).unwrap();
+        backend.load(TrainingState::new(splats(200)), 400).unwrap();
         let views = admitted(&mut backend, 3);
         let mut reports = Vec::new();
         for step in 0..36 {
@@ -121,7 +121,7 @@ fn a_state_comes_back_as_it_was_loaded() {
             network: None,
             resting: None,
         };
-        backend.load(&state, 60).unwrap();
+        backend.load(state.clone(), 60).unwrap();
         assert_eq!(backend.state().unwrap(), state);
         assert_eq!(backend.splat_count() as usize, n);
     }
@@ -132,7 +132,7 @@ fn a_view_without_a_visible_splat_changes_nothing() {
     let Some(gpu) = device() else { return };
     let mut backend = backend(&gpu);
     let before = splats(100);
-    backend.load(&TrainingState::new(before.clone()), 100).unwrap();
+    backend.load(TrainingState::new(before.clone()), 100).unwrap();
     let mut views = admitted(&mut backend, 1);
     let (eye, at) = (DVec3::new(0.0, 0.0, -4.0), DVec3::NEG_Z * 9.0);
     views[0].camera = Camera::look_at(eye, at, DVec3::NEG_Y, 0.7, (40, 30));
@@ -152,7 +152,7 @@ fn poisoned_splats_are_counted_and_the_others_stay_sound() {
     before.rotations[7] = [f32::NAN, 1.0, 0.0, 0.0];
     before.opacity_logits[11] = f32::NAN;
     before.sh_dc[13] = [f32::NEG_INFINITY; 3];
-    backend.load(&TrainingState::new(before), 100).unwrap();
+    backend.load(TrainingState::new(before), 100).unwrap();
     let views = admitted(&mut backend, 2);
     take_steps(&mut backend, &views, &TrainingConfig::growing(20, 100), 0..20);
     let reports = backend.reports(19).unwrap();
@@ -167,7 +167,7 @@ fn a_lost_device_is_told_and_opened_again_with_the_next_state() {
     let Some(gpu) = own_device() else { return };
     let mut backend = backend(&gpu);
     let state = TrainingState::new(splats(50));
-    backend.load(&state, 50).unwrap();
+    backend.load(state.clone(), 50).unwrap();
     let views = admitted(&mut backend, 1);
     let config = TrainingConfig::fixed(10);
     take_steps(&mut backend, &views, &config, 0..3);
@@ -179,7 +179,7 @@ fn a_lost_device_is_told_and_opened_again_with_the_next_state() {
     errors.extend(backend.reports(5).err());
     assert!(!errors.is_empty());
     assert!(errors.iter().all(|error| matches!(error, BackendError::DeviceLost(_))), "{errors:?}");
-    backend.load(&state, 50).unwrap();
+    backend.load(state, 50).unwrap();
     assert!(!backend.has_target(0));
     let views = admitted(&mut backend, 1);
     take_steps(&mut backend, &views, &config, 0..3);
@@ -197,10 +197,10 @@ fn what_does_not_fit_is_refused_with_need_and_have() {
         ..Default::default()
     };
     let mut backend = GpuBackend::new(&gpu, options).unwrap();
-    let error = backend.load(&TrainingState::new(splats(10)), 1_000).unwrap_err();
+    let error = backend.load(TrainingState::new(splats(10)), 1_000).unwrap_err();
     let BackendError::OutOfMemory { needed, available, .. } = error else { panic!("{error}") };
     assert_eq!((needed, available), (plan.total(), plan.total() - 1));
-    backend.load(&TrainingState::new(splats(10)), 999).unwrap();
+    backend.load(TrainingState::new(splats(10)), 999).unwrap();
     let error = backend.admit_target(0, Arc::new(photograph(0, (20, 20)))).unwrap_err();
     assert!(matches!(error, BackendError::OutOfMemory { needed: 1600, .. }), "{error}");
     for id in 0..3 {

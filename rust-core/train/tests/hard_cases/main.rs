@@ -27,7 +27,7 @@ fn camera(width: u32, height: u32) -> Camera {
 fn loaded(splats: Splats, camera: Camera, target: TargetImage) -> (CpuBackend, TrainingView) {
     let mut backend = CpuBackend::default();
     let capacity = 2 * splats.len() as u32;
-    backend.load(&TrainingState::new(splats), capacity).unwrap();
+    backend.load(TrainingState::new(splats), capacity).unwrap();
     backend.admit_target(0, Arc::new(target)).unwrap();
     (backend, TrainingView { id: 0, camera, time: 0.0 })
 }

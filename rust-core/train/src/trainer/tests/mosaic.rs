@@ -83,9 +83,9 @@ impl Mosaic {
 }
 
 impl TrainingBackend for Mosaic {
-    fn load(&mut self, state: &TrainingState, capacity: u32) -> Result<(), BackendError> {
+    fn load(&mut self, state: TrainingState, capacity: u32) -> Result<(), BackendError> {
         assert!(capacity as usize >= state.splats.len());
-        self.state = state.clone();
+        self.state = state;
         self.capacity = capacity;
         self.reports.clear();
         Ok(())

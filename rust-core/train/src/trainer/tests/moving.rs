@@ -96,7 +96,7 @@ fn a_roll_back_restores_the_network() {
         trained.network.rotation_head.bias[1] = f32::NAN;
     }
     let capacity = damaged.splats.len() as u32;
-    trainer.backend().load(&damaged, capacity).unwrap();
+    trainer.backend().load(damaged, capacity).unwrap();
     let mut returned_to = None;
     while returned_to.is_none() && !trainer.is_finished() {
         let taken = trainer.advance(1, &mut |event| {
