@@ -11,9 +11,12 @@ const KEPT: usize = 2;
 const SUFFIX: &str = ".checkpoint";
 const PREFIX: &str = "step-";
 const PAUSED: &str = "paused.checkpoint";
+const BRANCH: &str = "branch.checkpoint";
 
 /// A folder with the checkpoints of one run: the two newest that it can return to,
 /// `step-<number>.checkpoint`, and, where it was stopped between two of them, `paused.checkpoint`.
+/// While a trial goes on, `branch.checkpoint` is the end of its first branch; it belongs to the
+/// process that wrote it, and no run is taken up from there.
 ///
 /// A pause is kept apart because it must not change what a run returns to: a run that was paused
 /// and diverges later goes back as far as the one that was never paused.
@@ -56,6 +59,30 @@ impl CheckpointFolder {
         Ok(path)
     }
 
+    /// Saves the end of a branch, in place of an earlier one.
+    ///
+    /// # Errors
+    /// [`WriteError`] with the operating system's reason.
+    pub fn save_branch(&self, checkpoint: &Checkpoint) -> Result<(), WriteError> {
+        write_checkpoint(&self.path.join(BRANCH), checkpoint)
+    }
+
+    /// The end of the branch that was saved last.
+    ///
+    /// # Errors
+    /// [`ReadError`] when it is missing or damaged.
+    pub fn load_branch(&self) -> Result<Checkpoint, ReadError> {
+        read_checkpoint(&self.path.join(BRANCH))
+    }
+
+    /// Removes the end of a branch, if there is one.
+    pub fn remove_branch(&self) {
+        let path = self.path.join(BRANCH);
+        if path.exists() {
+            remove_or_warn(&path);
+        }
+    }
+
     /// The checkpoint of one step.
     ///
     /// # Errors
@@ -87,7 +114,8 @@ impl CheckpointFolder {
     /// [`WriteError`] with the operating system's reason.
     pub fn remove(&self) -> Result<(), WriteError> {
         let checkpoints = self.newest_first().into_iter().map(|(_, path)| path);
-        for path in checkpoints.chain(Some(self.path.join(PAUSED)).filter(|path| path.exists())) {
+        let others = [PAUSED, BRANCH].map(|name| self.path.join(name));
+        for path in checkpoints.chain(others.into_iter().filter(|path| path.exists())) {
             std::fs::remove_file(&path).map_err(|source| WriteError::Io { path, source })?;
         }
         // Files that are not ours stay, and the folder with them.
@@ -118,16 +146,14 @@ impl CheckpointFolder {
         first_error.map_or(Ok(None), Err)
     }
 
-    /// Removes what a killed process left half-written. Only for the one process that owns the
-    /// run, before it saves.
+    /// Removes what a killed process left: half-written files, and the branch of its trial. Only for
+    /// the one process that owns the run, before it saves.
     pub fn remove_litter(&self) {
+        self.remove_branch();
         for path in files(&self.path) {
             let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-            if name.starts_with(".trapeze-")
-                && name.ends_with(".tmp")
-                && let Err(error) = std::fs::remove_file(&path)
-            {
-                tracing::warn!("{}: cannot be removed: {error}", path.display());
+            if name.starts_with(".trapeze-") && name.ends_with(".tmp") {
+                remove_or_warn(&path);
             }
         }
     }
@@ -143,6 +169,12 @@ impl CheckpointFolder {
             .collect();
         found.sort_unstable_by(|a, b| b.cmp(a));
         found
+    }
+}
+
+fn remove_or_warn(path: &Path) {
+    if let Err(error) = std::fs::remove_file(path) {
+        tracing::warn!("{}: cannot be removed: {error}", path.display());
     }
 }
 
@@ -211,6 +243,23 @@ mod tests {
         assert!(checkpoints.load_paused(&rolled_back).is_none());
         std::fs::write(folder.path().join("run/paused.checkpoint"), b"half").unwrap();
         assert!(checkpoints.load_paused(&checkpoint(500)).is_none());
+        checkpoints.remove().unwrap();
+        assert!(!folder.path().join("run").exists());
+    }
+
+    #[test]
+    fn a_branch_is_never_taken_up_and_goes_with_its_process_or_with_the_run() {
+        let folder = tempfile::tempdir().unwrap();
+        let checkpoints = CheckpointFolder::new(folder.path().join("run"));
+        checkpoints.save(&checkpoint(500)).unwrap();
+        checkpoints.save_branch(&checkpoint(600)).unwrap();
+        assert_eq!(checkpoints.load_branch().unwrap(), checkpoint(600));
+        assert_eq!(checkpoints.load_newest().unwrap(), Some(checkpoint(500)));
+        assert!(checkpoints.load_paused(&checkpoint(500)).is_none());
+        checkpoints.remove_litter();
+        assert!(checkpoints.load_branch().is_err());
+        checkpoints.remove_branch();
+        checkpoints.save_branch(&checkpoint(600)).unwrap();
         checkpoints.remove().unwrap();
         assert!(!folder.path().join("run").exists());
     }

@@ -160,8 +160,7 @@ struct Run<'a, B> {
 impl<B: TrainingBackend> Run<'_, B> {
     fn memory(&self, start: &Checkpoint) -> TrainingMemory {
         let initial = start.state.splats.len() as u32;
-        let budget = self.options.photograph_budget as u64;
-        TrainingMemory::of(&start.config, &self.views, &self.backend, initial, budget)
+        TrainingMemory::of(&start.config, &self.views, &self.backend, initial, &self.options)
     }
 
     fn check_memory(&self, start: &Checkpoint) -> Result<(), TrainError> {

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 use trapeze_scene::ShDegree;
 
-use super::TrainError;
 use super::views::Views;
+use super::{TrainError, TrainerOptions};
 use crate::backend::TrainingBackend;
 use crate::config::{BudgetSearch, TrainingConfig};
 use crate::{TrainedNetwork, TrainingState};
@@ -16,7 +16,8 @@ const MEGABYTE: u64 = 1 << 20;
 pub struct TrainingMemory {
     /// Parameters, moments and gradients.
     pub parameters: u64,
-    /// Copies of the state while it is saved or, in a search, compared.
+    /// Copies of the state: one while it is saved or taken up, and, where there is no folder for
+    /// them, the good state and the branch that a search compares with.
     pub copies: u64,
     /// Photographs, decoded.
     pub photographs: u64,
@@ -31,7 +32,7 @@ impl TrainingMemory {
         views: &Views,
         backend: &impl TrainingBackend,
         initial: u32,
-        photograph_budget: u64,
+        options: &TrainerOptions,
     ) -> Self {
         let cap = config.densification.map_or(0, |densification| densification.max_splats);
         let most = searched(config).map_or(u32::MAX, |search| search.most_splats());
@@ -40,13 +41,17 @@ impl TrainingMemory {
         let is_moving = config.deformation.is_some();
         let network = if is_moving { TrainedNetwork::bytes() } else { 0 };
         let state = Self::of_state(config, splats, degree) + network;
+        let kept = match options.checkpoints {
+            Some(_) => 0,
+            None => 1 + u64::from(searched(config).is_some()),
+        };
         // Three bytes a pixel, in the backend; what is decoded ahead comes on top.
         let photographs = 3 * views.pixels();
         Self {
             parameters: state + state / 3,
-            copies: if searched(config).is_some() { 2 * state } else { state },
+            copies: state * (1 + kept),
             photographs: photographs.min(backend.target_budget())
-                + photographs.min(photograph_budget),
+                + photographs.min(options.photograph_budget as u64),
             working: backend.working_bytes(splats, views.largest())
                 + if is_moving { backend.network_working_bytes(splats) } else { 0 },
         }

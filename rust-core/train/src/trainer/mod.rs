@@ -22,9 +22,11 @@
 //!   state that is returned to is the same.
 //! * A lost device is loaded with the good state again, with unchanged rates.
 //! * [`Trainer::save`] between two good states writes a checkpoint beside the good one and does not
-//!   replace it. During a trial it writes nothing: a killed trial is repeated from its beginning.
+//!   replace it. During a trial it writes nothing: a killed trial is repeated from its beginning, and
+//!   what it had on disk of its first branch is removed.
 
 mod anchor;
+mod branch;
 mod error;
 mod event;
 mod growth;

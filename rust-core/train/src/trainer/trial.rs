@@ -1,10 +1,10 @@
 //! Trials of a search: two branches from one state.
 
+use super::branch::Branch;
 use super::growth::Growth;
 use super::search::{Direction, Proposal, Trial};
 use super::{Event, TrainError, Trainer};
 use crate::backend::TrainingBackend;
-use crate::checkpoint::Checkpoint;
 use crate::config::Background;
 use crate::densify::{RemovalCosts, random_signs, thin};
 use crate::evaluation::psnr_of;
@@ -24,13 +24,7 @@ pub(super) struct RunningTrial {
     /// How the branch with the change comes to its number of splats, where that is the change.
     growth: Option<Growth>,
     /// The end of the branch that stayed as it was; from then on the branch with the change runs.
-    without: Option<Box<Branch>>,
-}
-
-/// The end of a branch.
-struct Branch {
-    checkpoint: Checkpoint,
-    psnr: f64,
+    without: Option<Branch>,
 }
 
 impl RunningTrial {
@@ -125,8 +119,9 @@ impl<B: TrainingBackend> Trainer<B> {
         let Some(mut trial) = self.trial.take() else { return Ok(()) };
         match trial.without.take() {
             None => {
-                let branch = Branch { checkpoint: self.capture()?, psnr };
-                trial.without = Some(Box::new(branch));
+                let end = self.capture()?;
+                let folder = self.options.checkpoints.as_ref();
+                trial.without = Some(Branch::keep(folder, end, psnr)?);
                 let mut start = self.anchor.get()?;
                 if let Some(kept) = trial.kept.take() {
                     thin(&mut start.state, &kept);
@@ -134,7 +129,7 @@ impl<B: TrainingBackend> Trainer<B> {
                 self.trial = Some(trial);
                 self.enter(start)
             }
-            Some(without) => self.decide(&trial, *without, psnr, observer),
+            Some(without) => self.decide(&trial, without, psnr, observer),
         }
     }
 
@@ -162,7 +157,7 @@ impl<B: TrainingBackend> Trainer<B> {
             kept: psnr_with - without.psnr >= required_gain,
         };
         if !outcome.kept {
-            self.enter(without.checkpoint)?;
+            self.enter(without.into_checkpoint()?)?;
         }
         if let Some(search) = &mut self.progress.search {
             search.record(outcome);

@@ -90,6 +90,43 @@ fn a_branch_grows_by_a_little_at_a_time_and_is_whole_for_half_of_its_trial() {
 }
 
 #[test]
+fn the_first_branch_of_a_trial_is_on_disk_while_the_second_runs_and_a_killed_one_is_removed() {
+    let place = Workplace::new();
+    let is_on_disk = || place.checkpoints().load_branch().is_ok();
+    let mut trainer = place.start(searching(280), Mosaic::default());
+    let mut steps = 0;
+    while !trainer.is_finished() {
+        trainer.advance(1, &mut |_| ()).unwrap();
+        let runs_second = trainer.trial.as_ref().is_some_and(|trial| trial.change().is_some());
+        assert_eq!(is_on_disk(), runs_second);
+        steps += u32::from(runs_second);
+    }
+    assert!(steps >= 60, "{steps}");
+    place.checkpoints().remove().unwrap();
+    let mut killed = place.start(searching(280), Mosaic::default());
+    killed.advance(45, &mut |_| ()).unwrap();
+    // A process that is killed drops nothing.
+    std::mem::forget(killed);
+    assert!(is_on_disk());
+    drop(place.resume(&searching(280), Mosaic::default()));
+    assert!(!is_on_disk());
+}
+
+#[test]
+fn a_search_without_a_folder_finds_the_same() {
+    let place = Workplace::new();
+    let mut with = place.start(searching(280), Mosaic::default());
+    finish(&mut with);
+    let options = TrainerOptions { checkpoints: None, ..place.options() };
+    let mut without =
+        Trainer::start(&place.dataset, searching(280), Mosaic::default(), options).unwrap();
+    finish(&mut without);
+    assert_eq!(with.scene().unwrap(), without.scene().unwrap());
+    // The good state and the branch are in memory then.
+    assert_eq!(without.memory().copies, 3 * with.memory().copies);
+}
+
+#[test]
 fn validation_views_are_trained_on_only_after_the_search() {
     let place = Workplace::new();
     let mut trainer = place.start(searching(560), Mosaic::default());
