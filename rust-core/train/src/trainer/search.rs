@@ -10,7 +10,7 @@
 //! scene's numbers, or cost less than that per halving.
 //!
 //! First the set grows, in a stride twice as long where growth brought far more than it had to, until
-//! it was refused twice in a row. A branch takes its stride over the first half of its trial, by a
+//! it was refused twice in a row, or four times where the scene moves. A branch takes its stride over the first half of its trial, by a
 //! little in every densification step, as a run without a search grows.
 //!
 //! Growth duplicates what is opaque, not what will be good for something: then those splats leave that
@@ -34,10 +34,16 @@ use crate::numbers_of_splat;
 
 /// Refusals in a row after which the set grows no more: of a large stride, and of the smallest.
 const REFUSALS_OF_GROWTH: usize = 2;
+/// The same in a scene that moves. There two branches that differ in nothing of consequence still end
+/// 0.2 dB apart, since each is a network that went its own way: a refusal says little, and thinning
+/// takes back what growth was wrong about.
+const REFUSALS_IN_MOTION: usize = 4;
 /// Growth that brought this many times what it had to is tried in a stride twice as long.
 const GENEROUS: f64 = 2.0;
 /// Trials that growth leaves time for: to thin what has grown, and to try a band.
 const TRIALS_AFTER_GROWTH: u32 = 2;
+/// The same in a scene that moves, where growth may try until then: to thin twice, and to try two bands.
+const TRIALS_AFTER_GROWTH_IN_MOTION: u32 = 4;
 
 /// What a trial changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -114,8 +120,12 @@ impl Search {
         }
         let most = settings.most_splats().min(densification.max_splats);
         let grown = self.grown(&settings, most);
-        let has_time_to_grow = config.has_time_for_trials(step, 1 + TRIALS_AFTER_GROWTH);
-        if grown > self.splats && has_time_to_grow && !self.has_grown() {
+        let (most_refusals, trials_after_growth) = match config.deformation {
+            Some(_) => (REFUSALS_IN_MOTION, TRIALS_AFTER_GROWTH_IN_MOTION),
+            None => (REFUSALS_OF_GROWTH, TRIALS_AFTER_GROWTH),
+        };
+        let has_time_to_grow = config.has_time_for_trials(step, 1 + trials_after_growth);
+        if grown > self.splats && has_time_to_grow && !self.has_grown(most_refusals) {
             return Some(Direction::Change(Proposal::Splats(grown)));
         }
         if settings.thinning && !self.is_thin {
@@ -130,11 +140,11 @@ impl Search {
 
     /// Whether growth is over: refused in its long stride and in its short one, or already followed
     /// by something else.
-    fn has_grown(&self) -> bool {
+    fn has_grown(&self, most_refusals: usize) -> bool {
         let refused = self.trials.iter().rev().take_while(|trial| !trial.kept);
         self.is_thin
             || self.trials.iter().any(|trial| !trial.is_growth())
-            || refused.count() >= REFUSALS_OF_GROWTH
+            || refused.count() >= most_refusals
     }
 
     /// The number of splats that growth tries next: twice what the settings say, after that brought far
@@ -224,6 +234,7 @@ impl TrainingConfig {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::DeformationTraining;
 
     fn config() -> TrainingConfig {
         TrainingConfig::automatic(1400, 40_000)
@@ -275,6 +286,15 @@ mod tests {
         let search = run(|_, _| false);
         assert_eq!((search.splats, search.sh_degree, search.trials.len()), (10_000, 0, 3));
         assert!(search.is_thin);
+    }
+
+    #[test]
+    fn growth_is_tried_four_times_in_a_row_where_the_scene_moves() {
+        let mut config = config();
+        config.deformation = Some(DeformationTraining::default());
+        let search = run_with(&config, |_, _| false);
+        let growths = search.trials.iter().take_while(|trial| trial.is_growth()).count();
+        assert_eq!((growths, search.trials.len()), (4, 5));
     }
 
     #[test]
