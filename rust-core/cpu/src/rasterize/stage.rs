@@ -4,7 +4,8 @@ use fearless_simd::{Level, dispatch};
 use rayon::prelude::*;
 use trapeze_scene::Frame;
 
-use super::tile::{Band, StripSplat, TileRect, blend_tile};
+use super::strip::StripSplat;
+use super::tile::{Band, TileRect, blend_tile};
 use crate::bin::{BandLists, BandTiles, TileSize};
 use crate::project::ProjectedSplat;
 

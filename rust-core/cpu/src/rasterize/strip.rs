@@ -1,6 +1,11 @@
 //! What the forward and the backward pass of a tile do alike: which pixels a splat reaches, and
 //! how much of it each of them shows. Both passes go through this file, so both make the same
 //! decisions from the same bits.
+//!
+//! A block takes its splats in batches, and a batch in short loops: exponents of all its splats,
+//! alphas of those that are seen, then one splat after another over the pixels. A splat on a row is a
+//! chain of thirty dependent operations, and the processor looks ahead about a hundred: in one
+//! loop over everything it would have two rows under way, in these it has as many as it can work on.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x16, mask32x16};
@@ -11,83 +16,140 @@ use crate::project::{LOG2_ALPHA_MIN, ProjectedSplat};
 use crate::reference::{ALPHA_MAX, TRANSMITTANCE_MIN};
 
 /// Rows of a block: blended together.
-///
-/// One vector of pixels is a long chain of dependent operations (about a hundred cycles); four
-/// side by side fill the processor, and their sums still fit in its registers.
 pub(crate) const ROWS: usize = 4;
 
 /// Rows of a strip: what depends on the row alone is computed for all of them in one vector.
 pub(crate) const STRIP: usize = LANES;
 
-/// Splats between two looks at whether a block has been filled up.
-pub(crate) const FULL_CHECK_INTERVAL: usize = 8;
+/// Splats that a block takes together. After a batch it looks whether it has been filled up.
+pub(crate) const BATCH: usize = 16;
 
-/// What depends on a splat and the rows of a strip alone.
+/// A vector of pixels in memory, on a cache line.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(64))]
+pub(crate) struct Lanes([f32; LANES]);
+
+impl Lanes {
+    #[inline(always)]
+    pub(crate) fn load<S: Simd>(&self, simd: S) -> f32x16<S> {
+        f32x16::load_array(simd, self.0)
+    }
+
+    #[inline(always)]
+    pub(crate) fn store<S: Simd>(&mut self, values: f32x16<S>) {
+        values.store_array(&mut self.0);
+    }
+}
+
+/// A splat as one strip sees it: what both passes need of it, with what depends on the row alone.
 #[derive(Clone, Copy, Default)]
-pub(crate) struct RowTerms {
+#[repr(C, align(64))]
+pub(crate) struct StripSplat {
     /// u12 dy of each row.
     shear: [f32; STRIP],
     /// log₂ o − (u22 dy)² of each row: the largest exponent of α in it.
     exponent: [f32; STRIP],
-    /// Bit r: row r meets the ellipse.
-    rows: u32,
+    x: f32,
+    u11: f32,
+    pub(crate) color: [f32; 3],
+    pub(crate) depth: f32,
+    /// What the pass knows it by.
+    pub(crate) index: u32,
 }
 
-impl RowTerms {
-    /// The terms for rows at the distances `dy` from the splat's centre, pixels.
+impl StripSplat {
+    /// A splat on rows at the distances `dy` from its centre, pixels.
     #[inline(always)]
-    pub(crate) fn fill<S: Simd>(&mut self, splat: &ProjectedSplat, dy: f32x16<S>) {
+    pub(crate) fn fill<S: Simd>(&mut self, splat: &ProjectedSplat, index: u32, dy: f32x16<S>) {
         let v2 = dy * splat.u22;
-        let exponent = (-v2).mul_add(v2, splat.log2_opacity);
         (dy * splat.u12).store_array(&mut self.shear);
-        exponent.store_array(&mut self.exponent);
-        self.rows = exponent.simd_ge(LOG2_ALPHA_MIN).to_bitmask() as u32;
+        (-v2).mul_add(v2, splat.log2_opacity).store_array(&mut self.exponent);
+        self.x = splat.x;
+        self.u11 = splat.u11;
+        self.color = splat.color;
+        self.depth = splat.depth;
+        self.index = index;
     }
 
-    /// Whether it meets one of the rows of the block that begins with row `first_row`.
+    /// First component of U d, u11 dx + u12 dy, in the block that begins with row `first_row` of the
+    /// strip and whose columns are `x`.
     #[inline(always)]
-    pub(crate) fn meets_block(&self, first_row: usize) -> bool {
-        self.rows & (((1 << ROWS) - 1) << first_row) != 0
+    pub(crate) fn first_component<S: Simd>(
+        &self,
+        x: f32x16<S>,
+        first_row: usize,
+    ) -> [f32x16<S>; ROWS] {
+        let along = (x - self.x) * self.u11;
+        let shear = block_rows(&self.shear, first_row);
+        let mut v1 = [along; ROWS];
+        for r in 0..ROWS {
+            v1[r] += shear[r];
+        }
+        v1
     }
 }
 
-/// A splat on the pixels of a block.
-pub(crate) struct Coverage<S: Simd> {
-    /// First component of U d, u11 dx + u12 dy.
-    pub v1: [f32x16<S>; ROWS],
-    /// o·2^(−‖U d‖²), not yet limited; any number where the splat is not visible.
-    pub unlimited_alpha: [f32x16<S>; ROWS],
-    /// α ≥ 1/255, decided on the exponent: the same condition with less rounding.
-    pub visible: [mask32x16<S>; ROWS],
+/// The splats of a batch that a block sees, in drawing order.
+#[derive(Debug, Default)]
+pub(crate) struct Contributors {
+    /// Place of each in the batch; the first `count` are meant.
+    places: [u8; BATCH],
+    count: usize,
+    /// α of each, limited; 0 where a pixel does not see it.
+    alphas: [[Lanes; ROWS]; BATCH],
 }
 
-/// Evaluates a splat in the block that begins with row `first_row` of the strip; `along` is u11 dx
-/// of its columns. `None` where no pixel sees it.
-#[inline(always)]
-pub(crate) fn cover<S: Simd>(
-    simd: S,
-    terms: &RowTerms,
-    along: f32x16<S>,
-    first_row: usize,
-) -> Option<Coverage<S>> {
-    let zero = f32x16::splat(simd, 0.0);
-    let shear = block_rows(&terms.shear, first_row);
-    let row_exponent = block_rows(&terms.exponent, first_row);
-    let mut v1 = [zero; ROWS];
-    let mut exponent = [zero; ROWS];
-    let mut visible = [mask32x16::splat(simd, false); ROWS];
-    let mut any = mask32x16::splat(simd, false);
-    for r in 0..ROWS {
-        v1[r] = along + shear[r];
-        exponent[r] = (-v1[r]).mul_add(v1[r], row_exponent[r]);
-        visible[r] = exponent[r].simd_ge(LOG2_ALPHA_MIN);
-        any |= visible[r];
+impl Contributors {
+    /// Evaluates a batch in the block that begins with row `first_row` of the strip; `x` are its
+    /// columns.
+    ///
+    /// A pixel sees a splat where α ≥ 1/255. That is decided on the exponent: the same condition
+    /// with less rounding.
+    #[inline(always)]
+    pub(crate) fn find<S: Simd>(
+        &mut self,
+        simd: S,
+        batch: &[StripSplat],
+        x: f32x16<S>,
+        first_row: usize,
+    ) {
+        let batch = &batch[..batch.len().min(BATCH)];
+        let mut count = 0;
+        for (place, splat) in (0u8..).zip(batch) {
+            let v1 = splat.first_component(x, first_row);
+            let row_exponent = block_rows(&splat.exponent, first_row);
+            let exponents = &mut self.alphas[count];
+            let mut any = mask32x16::splat(simd, false);
+            for r in 0..ROWS {
+                let exponent = (-v1[r]).mul_add(v1[r], row_exponent[r]);
+                any |= exponent.simd_ge(LOG2_ALPHA_MIN);
+                exponents[r].store(exponent);
+            }
+            // Written in any case, kept by counting on: a branch would be mispredicted for every
+            // seventh splat, which costs more than the operations.
+            self.places[count] = place;
+            count += usize::from(any.any_true());
+        }
+        self.count = count;
+        let zero = f32x16::splat(simd, 0.0);
+        for rows in &mut self.alphas[..count] {
+            let mut exponents = [zero; ROWS];
+            for r in 0..ROWS {
+                exponents[r] = rows[r].load(simd);
+            }
+            let unlimited = exp2(simd, exponents);
+            for r in 0..ROWS {
+                let alpha = unlimited[r].min(ALPHA_MAX as f32);
+                rows[r].store(exponents[r].simd_ge(LOG2_ALPHA_MIN).select(alpha, zero));
+            }
+        }
     }
-    if !any.any_true() {
-        return None;
+
+    /// Place in the batch and α of each row.
+    #[inline(always)]
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (usize, &[Lanes; ROWS])> {
+        self.places[..self.count].iter().map(|&place| usize::from(place)).zip(&self.alphas)
     }
-    // Not in a closure, which would be compiled without the SIMD level's instructions.
-    Some(Coverage { v1, unlimited_alpha: exp2(simd, exponent), visible })
 }
 
 /// The values of a block's rows among those of its strip.
@@ -109,17 +171,11 @@ pub(crate) struct Step<S: Simd> {
     pub stays_open: mask32x16<S>,
 }
 
-/// Blends row `r` of a splat over pixels of transmittance `before`.
+/// Blends a splat of a given α over pixels of transmittance `before`.
 #[inline(always)]
-pub(crate) fn step<S: Simd>(
-    simd: S,
-    coverage: &Coverage<S>,
-    r: usize,
-    before: f32x16<S>,
-) -> Step<S> {
+pub(crate) fn step<S: Simd>(simd: S, alpha: f32x16<S>, before: f32x16<S>) -> Step<S> {
     let zero = f32x16::splat(simd, 0.0);
-    let alpha = coverage.unlimited_alpha[r].min(ALPHA_MAX as f32);
-    let full = coverage.visible[r].select(alpha * before, zero);
+    let full = alpha * before;
     let after = before - full;
     let stays_open = after.simd_gt(TRANSMITTANCE_MIN as f32);
     Step {

@@ -5,7 +5,7 @@ use fearless_simd::{f32x16, u32x16};
 use fearless_simd_macros::simd;
 use trapeze_scene::NO_SPLAT;
 
-use super::strip::{FULL_CHECK_INTERVAL, ROWS, RowTerms, STRIP, cover, is_open, step};
+use super::strip::{BATCH, Contributors, Lanes, ROWS, STRIP, Step, StripSplat, is_open, step};
 use crate::bin::LANES;
 use crate::project::ProjectedSplat;
 
@@ -44,18 +44,6 @@ struct Block<S: Simd> {
     top: [u32x16<S>; ROWS],
 }
 
-/// A splat as one strip sees it: what blending needs of it, in three cache lines.
-#[derive(Clone, Copy, Default)]
-#[repr(C, align(64))]
-pub(super) struct StripSplat {
-    terms: RowTerms,
-    x: f32,
-    u11: f32,
-    color: [f32; 3],
-    depth: f32,
-    index: u32,
-}
-
 /// Blends the splats that touch a tile, in the order given, and writes the tile into its band.
 ///
 /// Each pixel sees the operations of the reference in the reference's order: which block, strip or
@@ -71,6 +59,7 @@ pub(super) fn blend_tile<S: Simd, const DEPTH: bool, const TOP: bool>(
 ) {
     let rows = tile.height as usize;
     let lanes = f32x16::from_fn(simd, |lane| lane as f32 + 0.5);
+    let mut contributors = Contributors::default();
     for first_row in (0..rows).step_by(STRIP) {
         let y = lanes + (tile.y as usize + first_row) as f32;
         let strip = fill_strip(splats, ranks, y, strip);
@@ -78,7 +67,8 @@ pub(super) fn blend_tile<S: Simd, const DEPTH: bool, const TOP: bool>(
             let columns = (tile.x as usize..band.width).step_by(LANES);
             for column in columns.take(tile.width as usize / LANES) {
                 let x = lanes + column as f32;
-                let block = blend_block::<S, DEPTH, TOP>(simd, strip, x, block_row);
+                let block =
+                    blend_block::<S, DEPTH, TOP>(simd, strip, x, block_row, &mut contributors);
                 let first_row = first_row + block_row;
                 for r in 0..ROWS.min(rows - first_row) {
                     let start = (first_row + r) * band.width + column;
@@ -106,12 +96,7 @@ fn fill_strip<'a, S: Simd>(
     }
     for (entry, &rank) in strip.iter_mut().zip(ranks) {
         let splat = &splats[rank as usize];
-        entry.x = splat.x;
-        entry.u11 = splat.u11;
-        entry.color = splat.color;
-        entry.depth = splat.depth;
-        entry.index = splat.index;
-        entry.terms.fill(splat, y - splat.y);
+        entry.fill(splat, splat.index, y - splat.y);
     }
     &strip[..ranks.len()]
 }
@@ -123,6 +108,7 @@ fn blend_block<S: Simd, const DEPTH: bool, const TOP: bool>(
     splats: &[StripSplat],
     x: f32x16<S>,
     first_row: usize,
+    contributors: &mut Contributors,
 ) -> Block<S> {
     let zero = f32x16::splat(simd, 0.0);
     let mut block = Block {
@@ -134,11 +120,10 @@ fn blend_block<S: Simd, const DEPTH: bool, const TOP: bool>(
         top_weight: [zero; ROWS],
         top: [u32x16::splat(simd, NO_SPLAT); ROWS],
     };
-    for splats in splats.chunks(FULL_CHECK_INTERVAL) {
-        for splat in splats {
-            if splat.terms.meets_block(first_row) {
-                blend::<S, DEPTH, TOP>(simd, splat, x, first_row, &mut block);
-            }
+    for batch in splats.chunks(BATCH) {
+        contributors.find(simd, batch, x, first_row);
+        for (place, alphas) in contributors.iter() {
+            blend::<S, DEPTH, TOP>(simd, &batch[place], alphas, &mut block);
         }
         if !is_open(simd, &block.transmittance) {
             break;
@@ -152,17 +137,14 @@ fn blend_block<S: Simd, const DEPTH: bool, const TOP: bool>(
 fn blend<S: Simd, const DEPTH: bool, const TOP: bool>(
     simd: S,
     splat: &StripSplat,
-    x: f32x16<S>,
-    first_row: usize,
+    alphas: &[Lanes; ROWS],
     block: &mut Block<S>,
 ) {
-    let along = (x - splat.x) * splat.u11;
-    let Some(coverage) = cover(simd, &splat.terms, along, first_row) else { return };
     for r in 0..ROWS {
         let before = block.transmittance[r];
-        let step = step(simd, &coverage, r, before);
-        let weight = step.weight;
-        block.transmittance[r] = step.transmittance;
+        let Step { weight, after, transmittance, stays_open } =
+            step(simd, alphas[r].load(simd), before);
+        block.transmittance[r] = transmittance;
         block.weight[r] += weight;
         for (channel, value) in block.color.iter_mut().zip(splat.color) {
             channel[r] = weight.mul_add(value, channel[r]);
@@ -170,7 +152,7 @@ fn blend<S: Simd, const DEPTH: bool, const TOP: bool>(
         if DEPTH {
             block.weighted_depth[r] = weight.mul_add(splat.depth, block.weighted_depth[r]);
             // A pixel that this splat closes keeps its T; it does not cross anything.
-            let crosses = step.stays_open & before.simd_gt(0.5) & step.after.simd_le(0.5);
+            let crosses = stays_open & before.simd_gt(0.5) & after.simd_le(0.5);
             let depth = f32x16::splat(simd, splat.depth);
             block.median_depth[r] = crosses.select(depth, block.median_depth[r]);
         }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use trapeze_scene::Frame;
 
 use super::sums::{LANES, SplatSums};
-use super::tile::{BandPixels, StripSplat, backward_tile};
+use super::tile::{BandPixels, TileMemory, backward_tile};
 use crate::bin::{BandEntry, BandLists, BandTiles, TileSize};
 use crate::gradient::ImageGradient;
 use crate::project::ProjectedSplat;
@@ -40,7 +40,7 @@ pub struct BackwardMemory {
 struct Scratch {
     entries: Vec<BandEntry>,
     tiles: BandTiles,
-    strip: Vec<StripSplat>,
+    tile: TileMemory,
 }
 
 /// The sums of every splat, in drawing order.
@@ -70,7 +70,7 @@ pub fn rasterize_backward(
 fn sum_band(
     input: &BackwardInput<'_>,
     band: usize,
-    Scratch { entries, tiles, strip }: &mut Scratch,
+    Scratch { entries, tiles, tile: memory }: &mut Scratch,
     sums: &mut Vec<[f32; LANES]>,
 ) {
     let size = input.tile;
@@ -86,9 +86,9 @@ fn sum_band(
         let tile = TileRect { x, y, width: size.width(), height };
         let list = (&entries[..], positions);
         dispatch!(input.level, simd => if pixels.by_depth.is_empty() {
-            backward_tile::<_, false>(simd, input.splats, list, tile, strip, &pixels, sums);
+            backward_tile::<_, false>(simd, input.splats, list, tile, memory, &pixels, sums);
         } else {
-            backward_tile::<_, true>(simd, input.splats, list, tile, strip, &pixels, sums);
+            backward_tile::<_, true>(simd, input.splats, list, tile, memory, &pixels, sums);
         });
     }
 }

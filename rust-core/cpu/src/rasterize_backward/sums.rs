@@ -25,6 +25,9 @@ pub struct SplatSums {
     pub depth: f32,
 }
 
+/// Sums of a splat.
+pub(super) const SUMS: usize = 10;
+
 /// Floats of a [`SplatSums`] as one vector.
 pub(super) const LANES: usize = 16;
 

@@ -5,12 +5,12 @@ use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
 
 use super::reduce::sum_lanes;
-use super::sums::LANES;
+use super::sums::{LANES, SUMS};
 use crate::bin::BandEntry;
 use crate::project::ProjectedSplat;
 use crate::rasterize::TileRect;
 use crate::rasterize::strip::{
-    FULL_CHECK_INTERVAL, ROWS, RowTerms, STRIP, block_rows, cover, is_open, step,
+    BATCH, Contributors, Lanes, ROWS, STRIP, StripSplat, block_rows, is_open, step,
 };
 use crate::reference::ALPHA_MAX;
 
@@ -29,38 +29,54 @@ pub(super) struct BandPixels<'a> {
     pub by_depth: &'a [f32],
 }
 
-/// A splat as one strip sees it.
-#[derive(Clone, Copy, Default)]
-pub(super) struct StripSplat {
-    splat: ProjectedSplat,
-    terms: RowTerms,
-    /// Distance of each row from the centre.
-    dy: [f32; STRIP],
-    /// Where its sums are.
-    position: u32,
+/// A block of `ROWS` rows of sixteen pixels.
+#[derive(Debug, Default)]
+struct Block {
+    /// First row in the strip.
+    first_row: usize,
+    /// First column in the image.
+    column: usize,
+    /// Whether a pixel can still take weight.
+    is_open: bool,
+    /// T, as in the forward pass.
+    transmittance: [Lanes; ROWS],
+    /// Σ w v of the contributors that are still to come.
+    behind: [Lanes; ROWS],
+    /// ∂L/∂ the sums Σ w r, Σ w g, Σ w b, Σ w.
+    by_sums: [[Lanes; ROWS]; 4],
+    /// ∂L/∂ Σ w z.
+    by_weighted_depth: [Lanes; ROWS],
 }
 
-/// The pixels of a block.
-struct Block<S: Simd> {
-    /// T, as in the forward pass.
-    transmittance: [f32x16<S>; ROWS],
-    /// Σ w v of the contributors that are still to come.
-    behind: [f32x16<S>; ROWS],
-    /// ∂L/∂ the sums Σ w r, Σ w g, Σ w b, Σ w.
-    by_sums: [[f32x16<S>; ROWS]; 4],
-    /// ∂L/∂ Σ w z.
-    by_weighted_depth: [f32x16<S>; ROWS],
+/// What the pixels of a tile say about one splat, a sum in each lane: the fields of
+/// [`SplatSums`](super::SplatSums) in their order.
+type Totals = [Lanes; SUMS];
+
+/// Working memory of a tile: what its blocks and a batch of splats need fits into a first-level
+/// cache.
+#[derive(Default)]
+pub(super) struct TileMemory {
+    batch: [StripSplat; BATCH],
+    /// Distance of each row from the centre of each splat.
+    dy: [[f32; STRIP]; BATCH],
+    /// Zero between batches.
+    totals: [Totals; BATCH],
+    contributors: Contributors,
+    blocks: Vec<Block>,
 }
 
 /// Adds what the pixels of a tile say to `sums`, the lanes of every splat of the band. `positions`
 /// are the tile's splats by their place in `entries`.
+///
+/// A batch of splats goes over all blocks of a strip before the next one is looked at, so that the
+/// lanes of a splat are summed once for all of them.
 #[simd]
 pub(super) fn backward_tile<S: Simd, const DEPTH: bool>(
     simd: S,
     splats: &[ProjectedSplat],
     (entries, positions): (&[BandEntry], &[u32]),
     tile: TileRect,
-    strip: &mut Vec<StripSplat>,
+    memory: &mut TileMemory,
     pixels: &BandPixels<'_>,
     sums: &mut [[f32; LANES]],
 ) {
@@ -68,39 +84,52 @@ pub(super) fn backward_tile<S: Simd, const DEPTH: bool>(
     let lanes = f32x16::from_fn(simd, |lane| lane as f32 + 0.5);
     for first_row in (0..rows).step_by(STRIP) {
         let y = lanes + (tile.y as usize + first_row) as f32;
-        let strip = fill_strip(splats, entries, positions, y, strip);
+        let TileMemory { batch, dy, totals, contributors, blocks } = &mut *memory;
+        blocks.clear();
         for block_row in (0..STRIP.min(rows - first_row)).step_by(ROWS) {
             let columns = (tile.x as usize..pixels.width).step_by(LANES);
             for column in columns.take(tile.width as usize / LANES) {
-                let x = lanes + column as f32;
-                let row = first_row + block_row;
-                let block = load_block::<S, DEPTH>(simd, pixels, (row, rows), column);
-                backward_block::<S, DEPTH>(simd, strip, x, block_row, block, sums);
+                let at = (first_row + block_row, rows);
+                let block = load_block::<S, DEPTH>(simd, pixels, at, column);
+                blocks.push(Block { first_row: block_row, ..block });
+            }
+        }
+        for positions in positions.chunks(BATCH) {
+            for ((entry, dy), &position) in batch.iter_mut().zip(&mut *dy).zip(positions) {
+                let splat = &splats[entries[position as usize].rank as usize];
+                let distance = y - splat.y;
+                distance.store_array(dy);
+                entry.fill(splat, position, distance);
+            }
+            let batch = &batch[..positions.len()];
+            let mut any_open = false;
+            for block in blocks.iter_mut().filter(|block| block.is_open) {
+                let x = lanes + block.column as f32;
+                contributors.find(simd, batch, x, block.first_row);
+                backward_block::<S, DEPTH>(simd, (batch, dy), contributors, x, block, totals);
+                any_open |= block.is_open;
+            }
+            for (splat, totals) in batch.iter().zip(&mut *totals) {
+                let lanes = &mut sums[splat.index as usize];
+                (f32x16::load_array(simd, *lanes) + take_sums(simd, totals)).store_array(lanes);
+            }
+            if !any_open {
+                break;
             }
         }
     }
 }
 
-/// The splats of a tile for a strip with row centres `y`, with what depends on the row alone.
+/// The sums across the lanes, in the order of the vectors; leaves zeros.
 #[inline(always)]
-fn fill_strip<'a, S: Simd>(
-    splats: &[ProjectedSplat],
-    entries: &[BandEntry],
-    positions: &[u32],
-    y: f32x16<S>,
-    strip: &'a mut Vec<StripSplat>,
-) -> &'a [StripSplat] {
-    if strip.len() < positions.len() {
-        strip.resize(positions.len(), StripSplat::default());
+fn take_sums<S: Simd>(simd: S, totals: &mut Totals) -> f32x16<S> {
+    let zero = f32x16::splat(simd, 0.0);
+    let mut vectors = [zero; SUMS];
+    for i in 0..SUMS {
+        vectors[i] = totals[i].load(simd);
+        totals[i].store(zero);
     }
-    for (entry, &position) in strip.iter_mut().zip(positions) {
-        entry.splat = splats[entries[position as usize].rank as usize];
-        entry.position = position;
-        let dy = y - entry.splat.y;
-        dy.store_array(&mut entry.dy);
-        entry.terms.fill(&entry.splat, dy);
-    }
-    &strip[..positions.len()]
+    sum_lanes(simd, vectors)
 }
 
 /// Reads a block of the frame and of the gradient; pixels outside have T = 0 and so no part.
@@ -110,26 +139,18 @@ fn load_block<S: Simd, const DEPTH: bool>(
     pixels: &BandPixels<'_>,
     (first_row, rows): (usize, usize),
     column: usize,
-) -> Block<S> {
+) -> Block {
     let zero = f32x16::splat(simd, 0.0);
-    let mut block = Block {
-        transmittance: [zero; ROWS],
-        behind: [zero; ROWS],
-        by_sums: [[zero; ROWS]; 4],
-        by_weighted_depth: [zero; ROWS],
-    };
+    let mut block = Block { column, is_open: true, ..Block::default() };
     let count = LANES.min(pixels.width - column);
     let inside = f32x16::from_fn(simd, |lane| f32::from(u8::from(lane < count)));
     for r in 0..ROWS.min(rows - first_row) {
         let start = (first_row + r) * pixels.width + column;
         let [red, green, blue, alpha] = load_pixels(simd, &pixels.color[start..start + count]);
-        let by = load_pixels(simd, &pixels.by_color[start..start + count]);
+        let mut by = load_pixels(simd, &pixels.by_color[start..start + count]);
         let behind = by[0].mul_add(red, by[3] * alpha);
-        block.behind[r] = by[2].mul_add(blue, by[1].mul_add(green, behind));
-        block.transmittance[r] = inside;
-        for (plane, by) in block.by_sums.iter_mut().zip(by) {
-            plane[r] = by;
-        }
+        block.behind[r].store(by[2].mul_add(blue, by[1].mul_add(green, behind)));
+        block.transmittance[r].store(inside);
         if DEPTH {
             // D = Z / W with Z = Σ w z and W = Σ w: ∂L/∂Z = g / W, ∂L/∂W = −g D / W. Together
             // they add nothing to Σ w v. Where nothing was hit D is not a number.
@@ -137,8 +158,11 @@ fn load_block<S: Simd, const DEPTH: bool>(
             let depth = hit.select(load_row(simd, &pixels.depth[start..start + count]), zero);
             let by_depth = load_row(simd, &pixels.by_depth[start..start + count]);
             let by_weighted = hit.select(by_depth / alpha, zero);
-            block.by_weighted_depth[r] = by_weighted;
-            block.by_sums[3][r] -= by_weighted * depth;
+            block.by_weighted_depth[r].store(by_weighted);
+            by[3] -= by_weighted * depth;
+        }
+        for (plane, by) in block.by_sums.iter_mut().zip(by) {
+            plane[r].store(by);
         }
     }
     block
@@ -173,80 +197,78 @@ fn load_row<S: Simd>(simd: S, values: &[f32]) -> f32x16<S> {
     f32x16::load_array(simd, padded)
 }
 
+/// Blends the contributors of a batch as the forward pass did, and adds up what their pixels say.
 #[inline(always)]
 fn backward_block<S: Simd, const DEPTH: bool>(
     simd: S,
-    splats: &[StripSplat],
+    (batch, dy): (&[StripSplat], &[[f32; STRIP]; BATCH]),
+    contributors: &Contributors,
     x: f32x16<S>,
-    first_row: usize,
-    mut block: Block<S>,
-    sums: &mut [[f32; LANES]],
+    block: &mut Block,
+    totals: &mut [Totals; BATCH],
 ) {
-    for splats in splats.chunks(FULL_CHECK_INTERVAL) {
-        for splat in splats {
-            if splat.terms.meets_block(first_row) {
-                backward_splat::<S, DEPTH>(simd, splat, x, first_row, &mut block, sums);
+    let zero = f32x16::splat(simd, 0.0);
+    let mut transmittance = [zero; ROWS];
+    let mut behind = [zero; ROWS];
+    for r in 0..ROWS {
+        transmittance[r] = block.transmittance[r].load(simd);
+        behind[r] = block.behind[r].load(simd);
+    }
+    for (place, alphas) in contributors.iter() {
+        let (splat, totals) = (&batch[place], &mut totals[place]);
+        let v1 = splat.first_component(x, block.first_row);
+        let dy = block_rows(&dy[place], block.first_row);
+        let mut total = [zero; SUMS];
+        for i in 0..SUMS {
+            total[i] = totals[i].load(simd);
+        }
+        for r in 0..ROWS {
+            let alpha = alphas[r].load(simd);
+            let step = step(simd, alpha, transmittance[r]);
+            let weight = step.weight;
+            transmittance[r] = step.transmittance;
+
+            let [by_red, by_green, by_blue, by_weight] =
+                block.by_sums.each_ref().map(|plane| plane[r].load(simd));
+            let mut value = by_red.mul_add(splat.color[0], by_weight);
+            value = by_green.mul_add(splat.color[1], value);
+            value = by_blue.mul_add(splat.color[2], value);
+            if DEPTH {
+                let by_weighted_depth = block.by_weighted_depth[r].load(simd);
+                value = by_weighted_depth.mul_add(splat.depth, value);
+                total[9] = weight.mul_add(by_weighted_depth, total[9]);
+            }
+            behind[r] = (-weight).mul_add(value, behind[r]);
+            // α·∂L/∂α = T α v − α·behind / (1 − α) = w·(v − behind / T after), since w = T α and
+            // T after = T (1 − α).
+            let inverse = reciprocal(simd, step.after);
+            let q = weight * (-behind[r]).mul_add(inverse, value);
+            // Pixels that are full have no T after to divide by; at the clamp α is a constant.
+            let counts = step.stays_open & alpha.simd_lt(ALPHA_MAX as f32);
+            let q = counts.select(q, zero);
+
+            total[0] = weight.mul_add(by_red, total[0]);
+            total[1] = weight.mul_add(by_green, total[1]);
+            total[2] = weight.mul_add(by_blue, total[2]);
+            total[3] += q;
+            total[4] = q.mul_add(dy[r], total[4]);
+            total[5] = q.mul_add(dy[r] * dy[r], total[5]);
+            let q_v = q * v1[r];
+            total[6] += q_v;
+            total[7] = q_v.mul_add(dy[r], total[7]);
+            total[8] = q_v.mul_add(v1[r], total[8]);
+        }
+        for i in 0..SUMS {
+            if DEPTH || i != 9 {
+                totals[i].store(total[i]);
             }
         }
-        if !is_open(simd, &block.transmittance) {
-            break;
-        }
     }
-}
-
-/// Blends one splat as the forward pass did, and adds up what its pixels say.
-#[inline(always)]
-fn backward_splat<S: Simd, const DEPTH: bool>(
-    simd: S,
-    strip: &StripSplat,
-    x: f32x16<S>,
-    first_row: usize,
-    block: &mut Block<S>,
-    sums: &mut [[f32; LANES]],
-) {
-    let splat = &strip.splat;
-    let zero = f32x16::splat(simd, 0.0);
-    let along = (x - splat.x) * splat.u11;
-    let Some(coverage) = cover(simd, &strip.terms, along, first_row) else { return };
-    let (v1, dy) = (&coverage.v1, block_rows(&strip.dy, first_row));
-    let mut total = [zero; 10];
     for r in 0..ROWS {
-        let step = step(simd, &coverage, r, block.transmittance[r]);
-        let weight = step.weight;
-        block.transmittance[r] = step.transmittance;
-
-        let [by_red, by_green, by_blue, by_weight] = &block.by_sums;
-        let mut value = by_red[r].mul_add(splat.color[0], by_weight[r]);
-        value = by_green[r].mul_add(splat.color[1], value);
-        value = by_blue[r].mul_add(splat.color[2], value);
-        if DEPTH {
-            value = block.by_weighted_depth[r].mul_add(splat.depth, value);
-            total[9] = weight.mul_add(block.by_weighted_depth[r], total[9]);
-        }
-        let behind = block.behind[r] - weight * value;
-        block.behind[r] = behind;
-        // α·∂L/∂α = T α v − α·behind / (1 − α) = w·(v − behind / T after), since w = T α and
-        // T after = T (1 − α).
-        let inverse = reciprocal(simd, step.after);
-        let q = weight * (value - behind * inverse);
-        // Pixels that are not hit have no T after to divide by; at the clamp α is a constant.
-        let below_clamp = coverage.unlimited_alpha[r].simd_lt(ALPHA_MAX as f32);
-        let counts = coverage.visible[r] & step.stays_open & below_clamp;
-        let q = counts.select(q, zero);
-
-        total[0] = weight.mul_add(by_red[r], total[0]);
-        total[1] = weight.mul_add(by_green[r], total[1]);
-        total[2] = weight.mul_add(by_blue[r], total[2]);
-        total[3] += q;
-        total[4] = q.mul_add(dy[r], total[4]);
-        total[5] = q.mul_add(dy[r] * dy[r], total[5]);
-        let q_v = q * v1[r];
-        total[6] += q_v;
-        total[7] = q_v.mul_add(dy[r], total[7]);
-        total[8] = q_v.mul_add(v1[r], total[8]);
+        block.transmittance[r].store(transmittance[r]);
+        block.behind[r].store(behind[r]);
     }
-    let lanes = &mut sums[strip.position as usize];
-    (f32x16::load_array(simd, *lanes) + sum_lanes(simd, total)).store_array(lanes);
+    block.is_open = is_open(simd, &transmittance);
 }
 
 /// 1 / x to about 2⁻²³ on x86 and 2⁻¹⁵ on Arm: the hardware's estimate and a Newton step. A division
@@ -254,6 +276,6 @@ fn backward_splat<S: Simd, const DEPTH: bool>(
 #[inline(always)]
 fn reciprocal<S: Simd>(simd: S, x: f32x16<S>) -> f32x16<S> {
     let estimate = x.approximate_recip();
-    let error = f32x16::splat(simd, 1.0) - x * estimate;
+    let error = (-x).mul_add(estimate, f32x16::splat(simd, 1.0));
     error.mul_add(estimate, estimate)
 }
