@@ -36,19 +36,16 @@ pub struct PoseGradients {
     pub scales: Vec<[f32; 3]>,
 }
 
-/// Splats whose every entry is zero, in the shape of `splats`: a place for gradients.
-pub(crate) fn reset_like(gradients: &mut Splats, splats: &Splats) {
-    fn zero<T: Clone + Default>(values: &mut Vec<T>, length: usize) {
-        values.clear();
-        values.resize(length, T::default());
-    }
+/// Gives `gradients` the shape of `splats`. What is in it is anything; [`GradientChunk::clear`] makes it
+/// zero.
+pub(crate) fn shape_like(gradients: &mut Splats, splats: &Splats) {
     let n = splats.len();
-    zero(&mut gradients.positions, n);
-    zero(&mut gradients.log_scales, n);
-    zero(&mut gradients.rotations, n);
-    zero(&mut gradients.opacity_logits, n);
-    zero(&mut gradients.sh_dc, n);
-    zero(&mut gradients.sh_rest, splats.sh_rest.len());
+    gradients.positions.resize(n, [0.0; 3]);
+    gradients.log_scales.resize(n, [0.0; 3]);
+    gradients.rotations.resize(n, [0.0; 4]);
+    gradients.opacity_logits.resize(n, 0.0);
+    gradients.sh_dc.resize(n, [0.0; 3]);
+    gradients.sh_rest.resize(splats.sh_rest.len(), 0.0);
     gradients.sh_degree = splats.sh_degree;
 }
 
@@ -80,6 +77,16 @@ pub(crate) struct PoseChunk<'a> {
 impl GradientChunk<'_> {
     pub(crate) fn len(&self) -> usize {
         self.positions.len()
+    }
+
+    /// Makes the gradients by the splats zero; those by poses and outputs are from the start.
+    pub(crate) fn clear(&mut self) {
+        self.positions.fill([0.0; 3]);
+        self.log_scales.fill([0.0; 3]);
+        self.rotations.fill([0.0; 4]);
+        self.opacity_logits.fill(0.0);
+        self.sh_dc.fill([0.0; 3]);
+        self.sh_rest.fill(0.0);
     }
 
     /// The higher SH bands of entry `at`.

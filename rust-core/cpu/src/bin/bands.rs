@@ -26,8 +26,9 @@ pub struct BandLists {
 }
 
 impl BandLists {
-    /// Splats that one task bins: fixed, so that lists never depend on the number of threads.
-    pub(crate) const CHUNK: usize = 8192;
+    /// Splats that one task bins, and later adds up the sums of: fixed, so that lists never depend on
+    /// the number of threads, and few enough to share ten thousand splats out.
+    pub(crate) const CHUNK: usize = 1024;
 
     /// The entries of the splats of one chunk (ranks from `chunk * CHUNK`), by band.
     pub(crate) fn chunk(&self, chunk: usize) -> &[Vec<BandEntry>] {

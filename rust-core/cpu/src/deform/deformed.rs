@@ -44,7 +44,7 @@ pub struct SplatPose {
 }
 
 /// Splats that one task activates.
-const CHUNK: usize = 2048;
+const CHUNK: usize = 1024;
 
 impl Deformed {
     /// The splats as they are stored, activated: the state in scenes without a network.

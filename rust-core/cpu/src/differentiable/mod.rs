@@ -33,7 +33,7 @@ use trapeze_scene::{Camera, ColorSource, Frame, FrameSettings, Scene, SceneError
 use crate::bin::BandLists;
 use crate::deform::{DeformationOptions, DeformationStage, Deformed};
 use crate::deform_backward::{OutputGradient, PoseRule};
-use crate::gradient::{ImageGradient, PoseGradients, gradient_chunks, reset_like};
+use crate::gradient::{ImageGradient, PoseGradients, gradient_chunks, shape_like};
 use crate::project::{ProjectedSplat, ProjectedSplats, ProjectionStage, project};
 use crate::project_backward::BackwardView;
 use crate::rasterize::{Outputs, Target, rasterize};
@@ -299,10 +299,10 @@ impl DifferentiableRenderer {
             opacities: self.projection.opacities(),
             sorted: &self.sorted,
             rank_of: &rank_of,
-            sums: &sums,
+            sums,
             last,
         };
-        reset_like(by_splats, &scene.splats);
+        shape_like(by_splats, &scene.splats);
         gradient_chunks(by_splats, by_poses, by_outputs).into_par_iter().for_each(|mut chunk| {
             dispatch!(self.options.level, simd => backward_chunk(simd, &input, &mut chunk));
         });

@@ -38,6 +38,7 @@ pub(super) fn backward_chunk<S: Simd>(
     input: &SplatsBackward<'_>,
     chunk: &mut GradientChunk<'_>,
 ) {
+    chunk.clear();
     for at in 0..chunk.len() {
         let rank = input.rank_of[chunk.first + at];
         if rank != NOT_DRAWN {

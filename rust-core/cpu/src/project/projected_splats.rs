@@ -6,7 +6,7 @@ use super::ProjectedSplat;
 
 /// Splats that one task projects; fixed, so that the order of the output never depends on the
 /// number of threads.
-const CHUNK: usize = 4096;
+const CHUNK: usize = 1024;
 
 /// The visible splats of a frame in the order of the scene, as the tasks of the projection left
 /// them: drawing order is made from here in one pass, so they are never brought together. Memory

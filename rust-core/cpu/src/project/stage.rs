@@ -10,7 +10,7 @@ use crate::deform::Deformed;
 use crate::reference::{ALPHA_MIN, JACOBIAN_MARGIN, NEAR_PLANE};
 
 /// Splats whose opacities one task computes.
-const CHUNK: usize = 4096;
+const CHUNK: usize = 1024;
 
 /// What the projection needs of a scene and does not change with the frame.
 #[derive(Clone, Debug, Default)]

@@ -33,6 +33,9 @@ pub struct BackwardInput<'a> {
 pub struct BackwardMemory {
     /// The lanes of the splats of every band.
     bands: Vec<Vec<[f32; LANES]>>,
+    /// The lanes of every splat.
+    splats: Vec<[f32; LANES]>,
+    sums: Vec<SplatSums>,
 }
 
 /// Working memory of one task.
@@ -49,10 +52,10 @@ struct Scratch {
 /// When the gradient has another number of pixels than the frame, or asks for depth that the frame
 /// does not have.
 #[must_use]
-pub fn rasterize_backward(
+pub fn rasterize_backward<'a>(
     input: &BackwardInput<'_>,
-    memory: &mut BackwardMemory,
-) -> Vec<SplatSums> {
+    memory: &'a mut BackwardMemory,
+) -> &'a [SplatSums] {
     let BackwardInput { frame, gradient, .. } = input;
     assert!(gradient.fits(frame.color.len()), "one gradient per pixel");
     if gradient.expected_depth.is_some() {
@@ -64,7 +67,10 @@ pub fn rasterize_backward(
     bands.for_each_init(Scratch::default, |scratch, (band, sums)| {
         sum_band(input, band, scratch, sums);
     });
-    input.bands.sum_by_rank(&memory.bands, input.splats.len())
+    memory.splats.resize(input.splats.len(), [0.0; LANES]);
+    memory.sums.resize(input.splats.len(), SplatSums::default());
+    input.bands.sum_by_rank(memory);
+    &memory.sums
 }
 
 fn sum_band(
@@ -112,31 +118,31 @@ fn band_pixels<'a>(
 
 impl BandLists {
     /// Adds up what every splat got in each band, band by band, in drawing order.
-    fn sum_by_rank(&self, band_sums: &[Vec<[f32; LANES]>], splats: usize) -> Vec<SplatSums> {
-        let mut total = vec![SplatSums::default(); splats];
+    fn sum_by_rank(&self, memory: &mut BackwardMemory) {
+        let BackwardMemory { bands, splats, sums } = memory;
         // Chunks own disjoint runs of ranks; within a band they follow each other.
-        let mut starts = vec![0; band_sums.len()];
+        let mut starts = vec![0; bands.len()];
         let mut tasks = Vec::new();
-        for (chunk, total) in total.chunks_mut(Self::CHUNK).enumerate() {
-            tasks.push((chunk, total, starts.clone()));
+        let chunks = splats.chunks_mut(Self::CHUNK).zip(sums.chunks_mut(Self::CHUNK));
+        for (chunk, (lanes, sums)) in chunks.enumerate() {
+            tasks.push((chunk, lanes, sums, starts.clone()));
             for (start, entries) in starts.iter_mut().zip(self.chunk(chunk)) {
                 *start += entries.len();
             }
         }
-        tasks.into_par_iter().for_each(|(chunk, total, starts)| {
-            let mut lanes = vec![[0.0; LANES]; total.len()];
-            for ((entries, sums), start) in self.chunk(chunk).iter().zip(band_sums).zip(starts) {
-                for (entry, sums) in entries.iter().zip(&sums[start..]) {
+        tasks.into_par_iter().for_each(|(chunk, lanes, sums, starts)| {
+            lanes.fill([0.0; LANES]);
+            for ((entries, found), start) in self.chunk(chunk).iter().zip(&*bands).zip(starts) {
+                for (entry, found) in entries.iter().zip(&found[start..]) {
                     let lanes = &mut lanes[entry.rank as usize - chunk * Self::CHUNK];
-                    for (total, sum) in lanes.iter_mut().zip(sums) {
+                    for (total, sum) in lanes.iter_mut().zip(found) {
                         *total += sum;
                     }
                 }
             }
-            for (total, lanes) in total.iter_mut().zip(&lanes) {
-                *total = SplatSums::from_lanes(lanes);
+            for (sums, lanes) in sums.iter_mut().zip(lanes) {
+                *sums = SplatSums::from_lanes(lanes);
             }
         });
-        total
     }
 }

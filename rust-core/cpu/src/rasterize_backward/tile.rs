@@ -251,8 +251,9 @@ fn backward_block<S: Simd, const DEPTH: bool>(
             total[1] = weight.mul_add(by_green, total[1]);
             total[2] = weight.mul_add(by_blue, total[2]);
             total[3] += q;
-            total[4] = q.mul_add(dy[r], total[4]);
-            total[5] = q.mul_add(dy[r] * dy[r], total[5]);
+            let q_dy = q * dy[r];
+            total[4] += q_dy;
+            total[5] = q_dy.mul_add(dy[r], total[5]);
             let q_v = q * v1[r];
             total[6] += q_v;
             total[7] = q_v.mul_add(dy[r], total[7]);

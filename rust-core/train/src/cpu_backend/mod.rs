@@ -107,8 +107,8 @@ impl CpuBackend {
         let splats = u64::from(capacity).max(state.splats.len() as u64);
         let state_bytes = TrainingState::bytes(splats, state.splats.sh_degree);
         // Gradients are a third of a state; poses, projected splats (twice: before and after they
-        // are sorted), sums and keys.
-        let splat_bytes = state_bytes + state_bytes / 3 + splats * (44 + 2 * 64 + 40 + 16);
+        // are sorted), sums with the lanes that they are made in, and keys.
+        let splat_bytes = state_bytes + state_bytes / 3 + splats * (44 + 2 * 64 + 40 + 64 + 16);
         // Parameters, moments, gradient, the copy that is rendered; the way back.
         let network = match state.network {
             Some(_) => 2 * TrainedNetwork::bytes() + NETWORK_WORKING_BYTES,
@@ -123,6 +123,21 @@ impl CpuBackend {
         std::mem::swap(&mut self.scene.splats, &mut self.state.splats);
         let network = self.state.network.as_ref().filter(|_| with_network);
         self.scene.deformation = network.map(|trained| trained.network.clone());
+    }
+
+    fn step_in_pool(&mut self, plan: &StepPlan, view: &TrainingView) -> Result<(), BackendError> {
+        let missing = BackendError::MissingTarget { id: view.id };
+        let target = self.targets.get(view.id).ok_or(missing)?.clone();
+        self.state.raise_sh_degree(plan.sh_degree);
+        let loss = self.differentiate(plan, view, &target)?;
+        let visible = self.renderer.visible_splats() as u32;
+        let start = Instant::now();
+        let (by_splats, by_network) = (&mut self.by_splats, &self.by_network);
+        let not_finite =
+            apply_update(self.options.level, &mut self.state, by_splats, by_network, plan);
+        self.times.update += start.elapsed();
+        self.reports.push(StepReport { step: plan.step, loss, not_finite, visible });
+        Ok(())
     }
 
     /// Renders the resident splats and carries the loss back to `by_splats`.
@@ -219,19 +234,10 @@ impl TrainingBackend for CpuBackend {
         self.targets.admit(view, target)
     }
 
+    /// The step as a whole runs on a thread of the pool: from outside, each of its twenty parallel loops
+    /// would wake a worker and wait for it to wake the caller.
     fn step(&mut self, plan: &StepPlan, view: &TrainingView) -> Result<(), BackendError> {
-        let missing = BackendError::MissingTarget { id: view.id };
-        let target = self.targets.get(view.id).ok_or(missing)?.clone();
-        self.state.raise_sh_degree(plan.sh_degree);
-        let loss = self.differentiate(plan, view, &target)?;
-        let visible = self.renderer.visible_splats() as u32;
-        let start = Instant::now();
-        let (by_splats, by_network) = (&mut self.by_splats, &self.by_network);
-        let not_finite =
-            apply_update(self.options.level, &mut self.state, by_splats, by_network, plan);
-        self.times.update += start.elapsed();
-        self.reports.push(StepReport { step: plan.step, loss, not_finite, visible });
-        Ok(())
+        rayon::scope(|_| self.step_in_pool(plan, view))
     }
 
     fn densify(&mut self, plan: &DensifyPlan) -> Result<(), BackendError> {

@@ -30,7 +30,7 @@ impl Default for PositionNoise {
 }
 
 /// Splats per task.
-const CHUNK: usize = 2048;
+const CHUNK: usize = 1024;
 
 impl PositionNoise {
     /// Moves every position. `rate` is the step's learning rate of positions. A position that
