@@ -160,6 +160,21 @@ pub trait TrainingBackend {
     /// [`BackendError`] when the device fails.
     fn state(&mut self) -> Result<TrainingState, BackendError>;
 
+    /// The same without a copy, where the state is in memory that it can be taken out of. Until it is
+    /// [put back](Self::put_back) or another one is loaded, nothing else may be asked for.
+    ///
+    /// # Errors
+    /// [`BackendError`] when the device fails.
+    fn take_state(&mut self) -> Result<TrainingState, BackendError> {
+        self.state()
+    }
+
+    /// Puts back, unchanged, what [`take_state`](Self::take_state) gave.
+    fn put_back(&mut self, _state: TrainingState) {}
+
+    /// Frees what another state will need that is loaded next. Until then nothing else may be asked for.
+    fn release(&mut self) {}
+
     /// Whether the photograph of this view is resident.
     fn has_target(&self, view: u32) -> bool;
 

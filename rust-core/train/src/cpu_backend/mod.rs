@@ -42,6 +42,11 @@ impl Default for CpuBackendOptions {
 /// the activations of as many batches of 128 splats.
 const NETWORK_WORKING_BYTES: u64 = 64 << 20;
 
+/// Bytes that rendering takes for each splat at most: its pose 44, projected twice (before and after the
+/// sort) 128, sort keys 16, sums 40, and for each of the three bands of the image that it may touch in the
+/// mean 8 in the band's list, which may be half empty, and 64 of sums.
+const WORKING_BYTES_OF_SPLAT: u64 = 44 + 128 + 16 + 40 + 3 * (2 * 8 + 64);
+
 /// Time spent in each part of the steps so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CpuStepTimes {
@@ -201,6 +206,10 @@ impl Default for CpuBackend {
 }
 
 impl TrainingBackend for CpuBackend {
+    fn working_bytes(&self, splats: u32, pixels: u64) -> u64 {
+        WORKING_BYTES_OF_SPLAT * u64::from(splats) + 64 * pixels
+    }
+
     fn network_working_bytes(&self, _splats: u32) -> u64 {
         NETWORK_WORKING_BYTES
     }
@@ -224,6 +233,18 @@ impl TrainingBackend for CpuBackend {
 
     fn state(&mut self) -> Result<TrainingState, BackendError> {
         Ok(self.state.clone())
+    }
+
+    fn take_state(&mut self) -> Result<TrainingState, BackendError> {
+        Ok(std::mem::take(&mut self.state))
+    }
+
+    fn put_back(&mut self, state: TrainingState) {
+        self.state = state;
+    }
+
+    fn release(&mut self) {
+        self.state = TrainingState::default();
     }
 
     fn has_target(&self, view: u32) -> bool {

@@ -26,15 +26,15 @@ impl Anchor {
     }
 
     /// Replaces the good state by a newer one.
-    pub(super) fn set(&mut self, checkpoint: Checkpoint) -> Result<Option<PathBuf>, TrainError> {
+    pub(super) fn set(&mut self, checkpoint: &Checkpoint) -> Result<Option<PathBuf>, TrainError> {
         match self {
             Self::Folder(folder, step) => {
-                let path = folder.save(&checkpoint)?;
+                let path = folder.save(checkpoint)?;
                 *step = checkpoint.state.step;
                 Ok(Some(path))
             }
             Self::Memory(kept) => {
-                **kept = checkpoint;
+                **kept = checkpoint.clone();
                 Ok(None)
             }
         }

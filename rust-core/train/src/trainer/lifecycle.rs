@@ -114,10 +114,10 @@ impl<B: TrainingBackend> Trainer<B> {
         largest.max(checkpoint.state.splats.len() as u32)
     }
 
-    /// The present state. Waits.
-    pub(super) fn capture(&mut self) -> Result<Checkpoint, TrainError> {
+    /// The present state, taken from the backend, which has to get it back or another. Waits.
+    pub(super) fn take_checkpoint(&mut self) -> Result<Checkpoint, TrainError> {
         self.count_seconds();
-        let state = self.backend.state()?;
+        let state = self.backend.take_state()?;
         Ok(Checkpoint { config: self.config.clone(), progress: self.progress.clone(), state })
     }
 
@@ -135,8 +135,10 @@ impl<B: TrainingBackend> Trainer<B> {
         if !self.settle(observer)? {
             return Ok(None);
         }
-        let checkpoint = self.capture()?;
-        let path = folder.save_paused(&checkpoint)?;
+        let checkpoint = self.take_checkpoint()?;
+        let saved = folder.save_paused(&checkpoint);
+        self.backend.put_back(checkpoint.state);
+        let path = saved?;
         observer(Event::Saved { step: self.step, path: path.clone() });
         Ok(Some(path))
     }

@@ -16,8 +16,9 @@ const MEGABYTE: u64 = 1 << 20;
 pub struct TrainingMemory {
     /// Parameters, moments and gradients.
     pub parameters: u64,
-    /// Copies of the state: one while it is saved or taken up, and, where there is no folder for
-    /// them, the good state and the branch that a search compares with.
+    /// Copies of the state: one while it is saved or taken up, where the backend cannot do without,
+    /// and, where there is no folder for them, the good state and the branch that a search compares
+    /// with.
     pub copies: u64,
     /// Photographs, decoded.
     pub photographs: u64,

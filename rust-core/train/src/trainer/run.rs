@@ -175,8 +175,10 @@ impl<B: TrainingBackend> Trainer<B> {
         if !self.settle(observer)? {
             return Ok(false);
         }
-        let checkpoint = self.capture()?;
-        if let Some(path) = self.anchor.set(checkpoint)? {
+        let checkpoint = self.take_checkpoint()?;
+        let saved = self.anchor.set(&checkpoint);
+        self.backend.put_back(checkpoint.state);
+        if let Some(path) = saved? {
             observer(Event::Saved { step: self.step, path });
         }
         self.losses = 0;
@@ -199,8 +201,8 @@ impl<B: TrainingBackend> Trainer<B> {
             return Err(TrainError::Diverged { step, fault, times, good_step: to });
         }
         let rate_factor = good.progress.rate_factor;
-        self.anchor.set(good)?;
-        self.return_to(self.anchor.get()?)?;
+        self.anchor.set(&good)?;
+        self.return_to(good)?;
         observer(Event::RolledBack { step, to, rate_factor, reason: fault.to_string() });
         Ok(())
     }

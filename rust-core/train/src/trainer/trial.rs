@@ -119,7 +119,7 @@ impl<B: TrainingBackend> Trainer<B> {
         let Some(mut trial) = self.trial.take() else { return Ok(()) };
         match trial.without.take() {
             None => {
-                let end = self.capture()?;
+                let end = self.take_checkpoint()?;
                 let folder = self.options.checkpoints.as_ref();
                 trial.without = Some(Branch::keep(folder, end, psnr)?);
                 let mut start = self.anchor.get()?;
@@ -157,6 +157,7 @@ impl<B: TrainingBackend> Trainer<B> {
             kept: psnr_with - without.psnr >= required_gain,
         };
         if !outcome.kept {
+            self.backend.release();
             self.enter(without.into_checkpoint()?)?;
         }
         if let Some(search) = &mut self.progress.search {
@@ -169,7 +170,9 @@ impl<B: TrainingBackend> Trainer<B> {
     /// The splats that are worth their price, if not nearly all are.
     fn worth_keeping(&mut self) -> Result<Option<Vec<u32>>, TrainError> {
         let Some(settings) = self.config.search else { return Ok(None) };
-        let logits = self.backend.state()?.splats.opacity_logits;
+        let state = self.backend.take_state()?;
+        let logits = state.splats.opacity_logits.clone();
+        self.backend.put_back(state);
         let mut costs = RemovalCosts::new(logits.len());
         let shown = self.views.shown().to_vec();
         for (probe, &id) in (0..PROBES).zip(shown.iter().cycle()) {

@@ -84,6 +84,25 @@ fn a_killed_or_paused_run_with_splats_at_rest_ends_bit_identical() {
 }
 
 #[test]
+fn a_killed_search_of_a_moving_scene_ends_bit_identical() {
+    let mut config = super::searches::frequently_searching(140);
+    let motion = DeformationTraining { warm_up: 10, undisturbed: 0, ..Default::default() };
+    config.deformation = Some(motion);
+    if let Some(densification) = &mut config.densification {
+        densification.max_splats = 30;
+    }
+    let place = moving_place();
+    let mut trainer = start(&place, &config).unwrap();
+    trainer.advance(u32::MAX, &mut |_| ()).unwrap();
+    let search = trainer.summary().search.unwrap();
+    // States are taken out of the backend, put back and replaced, whichever branch is kept.
+    assert!(search.trials.iter().any(|trial| trial.kept), "{search:?}");
+    assert!(search.trials.iter().any(|trial| !trial.kept), "{search:?}");
+    let expected = trainer.scene().unwrap();
+    assert_eq!(run(&moving_place(), &config, &[35, 52], true), expected);
+}
+
+#[test]
 fn a_roll_back_restores_the_network() {
     let (place, config) = (moving_place(), moving_config(40));
     let mut trainer = start(&place, &config).unwrap();
