@@ -13,12 +13,11 @@ const CEILING: u64 = 2_000_000;
 /// working memory.
 const STATE_SHARE: u64 = 8;
 
-/// Values of the photographs that a search asks for by each number of a scene, at least: with one,
-/// there is a scene for any photographs, and what is true of the validation views is chance.
-const VALUES_BY_NUMBER: u64 = 2;
-
 /// The settings of a run of `steps` steps that finds how many splats and bands of up to `sh_degree`
 /// the photographs are worth, in `memory` bytes.
+///
+/// With as many numbers as the photographs have values there are scenes for any photographs at all; what
+/// is tried has at most two thirds of those values that a search trains on.
 #[must_use]
 pub fn search_for_training(
     dataset: &Dataset,
@@ -31,9 +30,11 @@ pub fn search_for_training(
         3 * u64::from(camera.width) * u64::from(camera.height)
     };
     let values: u64 = dataset.training_views().map(values).sum();
-    let most_numbers = Some(values / VALUES_BY_NUMBER);
+    let search = BudgetSearch::default();
+    let trained = values - values / u64::from(search.validation);
+    let most_numbers = Some(trained / 3 * 2);
     TrainingConfig {
-        search: Some(BudgetSearch { most_numbers, ..BudgetSearch::default() }),
+        search: Some(BudgetSearch { most_numbers, ..search }),
         sh_degree: sh_degree as u32,
         ..TrainingConfig::automatic(steps, splat_ceiling(memory, sh_degree))
     }
