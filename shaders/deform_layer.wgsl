@@ -1,6 +1,7 @@
 // A hidden layer of the deformation network under training: y = ReLU(W x + b) for a chunk of splats.
 //
-// Needs: common/network, common/matrix_tile, common/activation_block, common/weight_block.
+// Needs: common/network, common/matrix_block, common/activation_block, common/weight_block, and
+// common/matrix_tile or common/matrix_tile_split.
 //
 // A tile is 128 outputs × 128 splats; groups.x counts through the outputs, groups.y through the
 // splats.
@@ -48,5 +49,5 @@ fn deform_layer(
     first_output = group.x * TILE;
     first_column = group.y * TILE;
     let steps = (layer.inputs + STEP - 1u) / STEP;
-    store_tile(product(0u, steps, thread), thread);
+    multiply(0u, steps, thread);
 }

@@ -1,7 +1,8 @@
 // The mirror of deform_layer.wgsl by its input: ∂L/∂x = Wᵀ ∂L/∂y for a chunk of splats, through the
 // ReLU that x came out of, and into the place of x.
 //
-// Needs: common/network, common/matrix_tile, common/activation_block, common/weight_block.
+// Needs: common/network, common/matrix_block, common/activation_block, common/weight_block, and
+// common/matrix_tile or common/matrix_tile_split.
 //
 // A tile is 128 hidden inputs × 128 splats. γ, in front of them in one layer, gets no gradient. Only
 // the thread that overwrites an element of x reads it.
@@ -48,5 +49,5 @@ fn deform_layer_backward(
     first_input = layer.encoded_inputs + group.x * TILE;
     first_column = group.y * TILE;
     let steps = (layer.outputs + STEP - 1u) / STEP;
-    store_tile(product(0u, steps, thread), thread);
+    multiply(0u, steps, thread);
 }

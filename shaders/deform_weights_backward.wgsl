@@ -1,7 +1,8 @@
 // The mirror of deform_layer.wgsl by its parameters: ∂L/∂W = Σ ∂L/∂y ⊗ x and ∂L/∂b = Σ ∂L/∂y over
 // the splats of a chunk, in parts that deform_weights_sum.wgsl adds up in a fixed order.
 //
-// Needs: common/network, common/matrix_tile, common/activation_block.
+// Needs: common/network, common/matrix_block, common/activation_block, and common/matrix_tile or
+// common/matrix_tile_split.
 //
 // A tile is 128 outputs × 128 inputs; groups.x counts through the tiles, groups.y through the parts
 // of the sum: a layer has at most a handful of tiles, far fewer than a GPU has cores.
@@ -44,18 +45,11 @@ fn store_row(row: u32, column: u32, value: vec4<f32>) {
     }
 }
 
-/// Adds up what the threads have loaded of each row: four of them have each row.
+/// ∂L/∂b is the sum of the rows of ∂L/∂y.
 fn store_bias(loaded: vec4<f32>, thread: u32) {
-    workgroupBarrier();
-    let at = loaded_block(thread);
-    if (thread < 128u) {
-        left[4u * at.x + at.y] = loaded;
-    }
-    workgroupBarrier();
+    let sum = sum_of_rows(loaded, thread);
     let output = first_output + 4u * thread;
     if (thread < TILE_VECTORS && output < layer.outputs) {
-        let sum = (left[4u * thread] + left[4u * thread + 1u])
-            + (left[4u * thread + 2u] + left[4u * thread + 3u]);
         parts[first_vector + (layer.outputs * layer.inputs + output) / 4u] = sum;
     }
 }
@@ -70,9 +64,9 @@ fn deform_weights_backward(
     first_input = group.x % input_tiles * TILE;
     first_vector = group.y * (layer.outputs * layer.inputs + layer.outputs) / 4u;
     let count = sum_parts(chunk.steps, layer.most_parts);
-    let tile = product(chunk.steps * group.y / count, chunk.steps * (group.y + 1u) / count, thread);
-    store_tile(tile, thread);
+    let first_step = chunk.steps * group.y / count;
+    let loaded = multiply(first_step, chunk.steps * (group.y + 1u) / count, thread);
     if (group.x % input_tiles == 0u) {
-        store_bias(tile.loaded, thread);
+        store_bias(loaded, thread);
     }
 }

@@ -1,6 +1,6 @@
 // What the products of the deformation network under training read of its activations.
 //
-// Needs: common/network, common/matrix_tile; of the stage: `layer`, `activations`.
+// Needs: common/network, common/matrix_block; of the stage: `layer`, `activations`.
 
 /// Rows `row` … + 3 at the columns `column` … + 3.
 fn activation_block(row: u32, column: u32) -> Block {

@@ -1,9 +1,8 @@
-// Products of matrices: a workgroup computes a tile of 128 × 128 of Σₖ left[k] ⊗ right[k].
+// Products of matrices in single precision: a workgroup computes a tile of 128 × 128 of
+// Σₖ left[k] ⊗ right[k].
 //
-// The stage's own file has three functions for it:
-//   load_left(contraction, row), load_right(contraction, row): rows `row` … + 3 of the tile at the
-//     indices `contraction` … + 3 of the sum; zeros where there is nothing;
-//   store_row(row, column, value): what becomes of four neighbours in a row of the result.
+// Needs: common/matrix_block. The stage's own file has store_row(row, column, value): what becomes of
+// four neighbours in a row of the result.
 //
 // 256 threads, 16 × 16. Both factors pass through workgroup memory in steps of 16 along the sum
 // (16 KiB, which every device has); the next step's are on their way, in registers, while one is
@@ -11,24 +10,9 @@
 // multiply–adds. Its rows and columns are two runs of four, 64 apart, so that neighbours read
 // neighbouring vectors.
 
-/// Rows and columns of a tile.
-const TILE: u32 = 128u;
-/// Vectors in a row of a tile.
-const TILE_VECTORS: u32 = 32u;
-/// Indices of the sum in a step.
-const STEP: u32 = 16u;
-
 /// Row k: elements of one factor at index k of the sum.
 var<workgroup> left: array<vec4<f32>, 512>;
 var<workgroup> right: array<vec4<f32>, 512>;
-
-/// Four rows of a tile (components) at four indices of the sum.
-struct Block {
-    k0: vec4<f32>,
-    k1: vec4<f32>,
-    k2: vec4<f32>,
-    k3: vec4<f32>,
-}
 
 /// A thread's elements: row by row, eight columns each.
 struct Tile {
@@ -52,27 +36,11 @@ struct Tile {
     loaded: vec4<f32>,
 }
 
-/// The block of four vectors that were read along the sum, one per row of the tile.
-fn transposed(rows: Block) -> Block {
-    let columns = transpose(mat4x4<f32>(rows.k0, rows.k1, rows.k2, rows.k3));
-    return Block(columns[0], columns[1], columns[2], columns[3]);
-}
-
-/// Which block of a step a thread loads, in vectors: along the tile (x), along the sum (y). The
-/// first half of the threads load the left factor, the others the right one. Threads in pairs are
-/// neighbours along the sum: where that is how the factor lies in memory, they read 32 bytes.
+/// Which block a thread loads. Threads in pairs are neighbours along the sum: where that is how the
+/// factor lies in memory, they read 32 bytes.
 fn loaded_block(thread: u32) -> vec2<u32> {
     let t = thread % 128u;
     return vec2<u32>((t / 2u) % 16u + 16u * (t / 64u), t % 2u + 2u * ((t / 32u) % 2u));
-}
-
-fn load_step(step: u32, thread: u32) -> Block {
-    let at = loaded_block(thread);
-    let contraction = step * STEP + 4u * at.y;
-    if (thread < 128u) {
-        return load_left(contraction, 4u * at.x);
-    }
-    return load_right(contraction, 4u * at.x);
 }
 
 fn store_step(block: Block, thread: u32) {
@@ -156,4 +124,25 @@ fn store_tile(tile: Tile, thread: u32) {
 fn store_pair(row: u32, column_vector: u32, first: vec4<f32>, second: vec4<f32>) {
     store_row(row, 4u * column_vector, first);
     store_row(row, 4u * column_vector + 64u, second);
+}
+
+/// Computes the tile, summed over the steps from `first` to before `end`, one at least, and hands it
+/// to the stage. Returns Σₖ of the rows that the thread has loaded.
+fn multiply(first: u32, end: u32, thread: u32) -> vec4<f32> {
+    let tile = product(first, end, thread);
+    store_tile(tile, thread);
+    return tile.loaded;
+}
+
+/// Of each four rows of the left factor, in the first 32 threads, what the four threads with these
+/// rows have loaded.
+fn sum_of_rows(loaded: vec4<f32>, thread: u32) -> vec4<f32> {
+    workgroupBarrier();
+    let at = loaded_block(thread);
+    if (thread < 128u) {
+        left[4u * at.x + at.y] = loaded;
+    }
+    workgroupBarrier();
+    let first = 4u * (thread % TILE_VECTORS);
+    return (left[first] + left[first + 1u]) + (left[first + 2u] + left[first + 3u]);
 }

@@ -47,6 +47,8 @@ struct NetworkLayer {
     row_vectors: u32,
     /// Most parts that the sum over splats is cut into.
     most_parts: u32,
+    /// Row of the activations where the outputs of the heads start.
+    head_row: u32,
 }
 
 /// Parts that the sum over the splats of a chunk is cut into: at least four steps each.

@@ -1,6 +1,6 @@
 // What the products of the deformation network under training read of its weights.
 //
-// Needs: common/network, common/matrix_tile; of the stage: `layer`, `parameters`.
+// Needs: common/network, common/matrix_block; of the stage: `layer`, `parameters`.
 
 /// Rows `output` … + 3 of W at the columns `input` … + 3.
 fn weight_block(output: u32, input: u32) -> Block {

@@ -45,6 +45,7 @@ struct NetworkLayer {
     uint encoded_inputs;
     uint row_vectors;
     uint most_parts;
+    uint head_row;
 };
 typedef float type_7[1];
 typedef metal::float4 type_8[1];

@@ -43,6 +43,7 @@ struct NetworkLayer {
     uint encoded_inputs;
     uint row_vectors;
     uint most_parts;
+    uint head_row;
 };
 typedef uint type_7[1];
 typedef float type_8[1];

@@ -7,8 +7,8 @@
 using metal::uint;
 
 struct _mslBufferSizes {
-    uint size4;
-    uint size5;
+    uint size2;
+    uint size3;
 };
 
 struct type_2 {
@@ -34,15 +34,17 @@ struct NetworkLayer {
     uint encoded_inputs;
     uint row_vectors;
     uint most_parts;
-};
-struct type_3 {
-    metal::float4 inner[512];
+    uint head_row;
 };
 struct Block {
     metal::float4 k0_;
     metal::float4 k1_;
     metal::float4 k2_;
     metal::float4 k3_;
+};
+typedef metal::float4 type_5[1];
+struct type_7 {
+    metal::float4 inner[512];
 };
 struct Tile {
     metal::float4 a0_;
@@ -63,7 +65,6 @@ struct Tile {
     metal::float4 b7_;
     metal::float4 loaded;
 };
-typedef metal::float4 type_6[1];
 constant uint TILE = 128u;
 constant uint TILE_VECTORS = 32u;
 constant uint STEP = 16u;
@@ -101,7 +102,7 @@ Block weight_block(
     uint output,
     uint input,
     constant NetworkLayer& layer,
-    device type_6 const& parameters,
+    device type_5 const& parameters,
     constant _mslBufferSizes& _buffer_sizes
 ) {
     uint _e4 = layer.inputs;
@@ -120,7 +121,7 @@ Block load_left(
     uint row,
     thread uint& first_input,
     constant NetworkLayer& layer,
-    device type_6 const& parameters,
+    device type_5 const& parameters,
     constant _mslBufferSizes& _buffer_sizes
 ) {
     bool local = {};
@@ -145,7 +146,7 @@ Block activation_block(
     uint row_1,
     uint column,
     constant NetworkLayer& layer,
-    device type_6 const& activations,
+    device type_5 const& activations,
     constant _mslBufferSizes& _buffer_sizes
 ) {
     uint stride_1 = layer.row_vectors;
@@ -161,7 +162,7 @@ Block load_right(
     uint output_2,
     uint column_1,
     constant NetworkLayer& layer,
-    device type_6 const& activations,
+    device type_5 const& activations,
     thread uint& first_column,
     constant _mslBufferSizes& _buffer_sizes
 ) {
@@ -180,8 +181,8 @@ Block load_step(
     uint thread_2,
     thread uint& first_input,
     constant NetworkLayer& layer,
-    device type_6 const& parameters,
-    device type_6 const& activations,
+    device type_5 const& parameters,
+    device type_5 const& activations,
     thread uint& first_column,
     constant _mslBufferSizes& _buffer_sizes
 ) {
@@ -198,8 +199,8 @@ Block load_step(
 void store_step(
     Block block,
     uint thread_3,
-    threadgroup type_3& left,
-    threadgroup type_3& right
+    threadgroup type_7& left,
+    threadgroup type_7& right
 ) {
     metal::uint2 _e2 = loaded_block(thread_3);
     uint at_2 = ((4u * _e2.y) * TILE_VECTORS) + _e2.x;
@@ -227,8 +228,8 @@ metal::uint2 tile_place(
 void multiply_add(
     thread Tile& tile,
     metal::uint2 place,
-    threadgroup type_3& left,
-    threadgroup type_3& right
+    threadgroup type_7& left,
+    threadgroup type_7& right
 ) {
     uint k = 0u;
     bool loop_init = true;
@@ -293,13 +294,13 @@ Tile product(
     uint first,
     uint end,
     uint thread_5,
-    threadgroup type_3& left,
-    threadgroup type_3& right,
     thread uint& first_input,
     constant NetworkLayer& layer,
-    device type_6 const& parameters,
-    device type_6 const& activations,
+    device type_5 const& parameters,
+    device type_5 const& activations,
     thread uint& first_column,
+    threadgroup type_7& left,
+    threadgroup type_7& right,
     constant _mslBufferSizes& _buffer_sizes
 ) {
     Tile tile_1 = Tile {};
@@ -351,7 +352,7 @@ void store_row(
     metal::float4 value,
     thread uint& first_input,
     constant NetworkLayer& layer,
-    device type_6& activations,
+    device type_5& activations,
     thread uint& first_column,
     constant _mslBufferSizes& _buffer_sizes
 ) {
@@ -377,7 +378,7 @@ void store_pair(
     metal::float4 second,
     thread uint& first_input,
     constant NetworkLayer& layer,
-    device type_6& activations,
+    device type_5& activations,
     thread uint& first_column,
     constant _mslBufferSizes& _buffer_sizes
 ) {
@@ -391,7 +392,7 @@ void store_tile(
     uint thread_6,
     thread uint& first_input,
     constant NetworkLayer& layer,
-    device type_6& activations,
+    device type_5& activations,
     thread uint& first_column,
     constant _mslBufferSizes& _buffer_sizes
 ) {
@@ -407,16 +408,53 @@ void store_tile(
     return;
 }
 
+metal::float4 multiply(
+    uint first_2,
+    uint end_1,
+    uint thread_7,
+    thread uint& first_input,
+    constant NetworkLayer& layer,
+    device type_5 const& parameters,
+    device type_5& activations,
+    thread uint& first_column,
+    threadgroup type_7& left,
+    threadgroup type_7& right,
+    constant _mslBufferSizes& _buffer_sizes
+) {
+    Tile _e3 = product(first_2, end_1, thread_7, first_input, layer, parameters, activations, first_column, left, right, _buffer_sizes);
+    store_tile(_e3, thread_7, first_input, layer, activations, first_column, _buffer_sizes);
+    return _e3.loaded;
+}
+
+metal::float4 sum_of_rows(
+    metal::float4 loaded,
+    uint thread_8,
+    threadgroup type_7& left
+) {
+    metal::threadgroup_barrier(metal::mem_flags::mem_threadgroup);
+    metal::uint2 _e2 = loaded_block(thread_8);
+    if (thread_8 < 128u) {
+        left.inner[(4u * _e2.x) + _e2.y] = loaded;
+    }
+    metal::threadgroup_barrier(metal::mem_flags::mem_threadgroup);
+    uint first_3 = 4u * naga_mod(thread_8, TILE_VECTORS);
+    metal::float4 _e18 = left.inner[first_3];
+    metal::float4 _e23 = left.inner[first_3 + 1u];
+    metal::float4 _e29 = left.inner[first_3 + 2u];
+    metal::float4 _e34 = left.inner[first_3 + 3u];
+    return (_e18 + _e23) + (_e29 + _e34);
+}
+
 struct deform_layer_backwardInput {
 };
 [[max_total_threads_per_threadgroup(256)]] kernel void deform_layer_backward(
   metal::uint3 group [[threadgroup_position_in_grid]]
 , uint thread_ [[thread_index_in_threadgroup]]
-, threadgroup type_3& left
-, threadgroup type_3& right
 , constant NetworkLayer& layer [[user(fake0)]]
-, device type_6 const& parameters [[user(fake0)]]
-, device type_6& activations [[user(fake0)]]
+, device type_5 const& parameters [[user(fake0)]]
+, device type_5& activations [[user(fake0)]]
+, threadgroup type_7& left
+, threadgroup type_7& right
 , constant _mslBufferSizes& _buffer_sizes [[user(fake0)]]
 ) {
     uint first_input = {};
@@ -426,7 +464,6 @@ struct deform_layer_backwardInput {
     first_column = group.y * TILE;
     uint _e16 = layer.outputs;
     uint steps_1 = naga_div((_e16 + STEP) - 1u, STEP);
-    Tile _e24 = product(0u, steps_1, thread_, left, right, first_input, layer, parameters, activations, first_column, _buffer_sizes);
-    store_tile(_e24, thread_, first_input, layer, activations, first_column, _buffer_sizes);
+    metal::float4 _e24 = multiply(0u, steps_1, thread_, first_input, layer, parameters, activations, first_column, left, right, _buffer_sizes);
     return;
 }

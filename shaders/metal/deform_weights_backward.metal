@@ -7,7 +7,7 @@
 using metal::uint;
 
 struct _mslBufferSizes {
-    uint size4;
+    uint size2;
     uint size6;
 };
 
@@ -34,15 +34,17 @@ struct NetworkLayer {
     uint encoded_inputs;
     uint row_vectors;
     uint most_parts;
-};
-struct type_3 {
-    metal::float4 inner[512];
+    uint head_row;
 };
 struct Block {
     metal::float4 k0_;
     metal::float4 k1_;
     metal::float4 k2_;
     metal::float4 k3_;
+};
+typedef metal::float4 type_5[1];
+struct type_6 {
+    metal::float4 inner[512];
 };
 struct Tile {
     metal::float4 a0_;
@@ -63,7 +65,6 @@ struct Tile {
     metal::float4 b7_;
     metal::float4 loaded;
 };
-typedef metal::float4 type_6[1];
 constant uint TILE = 128u;
 constant uint TILE_VECTORS = 32u;
 constant uint STEP = 16u;
@@ -101,7 +102,7 @@ Block activation_block(
     uint row,
     uint column,
     constant NetworkLayer& layer,
-    device type_6 const& activations,
+    device type_5 const& activations,
     constant _mslBufferSizes& _buffer_sizes
 ) {
     uint stride = layer.row_vectors;
@@ -118,7 +119,7 @@ Block load_left(
     uint row_1,
     thread uint& first_output,
     constant NetworkLayer& layer,
-    device type_6 const& activations,
+    device type_5 const& activations,
     constant _mslBufferSizes& _buffer_sizes
 ) {
     uint _e3 = first_output;
@@ -137,7 +138,7 @@ Block load_right(
     uint column_2,
     uint row_2,
     constant NetworkLayer& layer,
-    device type_6 const& activations,
+    device type_5 const& activations,
     thread uint& first_input,
     constant _mslBufferSizes& _buffer_sizes
 ) {
@@ -158,7 +159,7 @@ Block load_step(
     uint thread_2,
     thread uint& first_output,
     constant NetworkLayer& layer,
-    device type_6 const& activations,
+    device type_5 const& activations,
     thread uint& first_input,
     constant _mslBufferSizes& _buffer_sizes
 ) {
@@ -175,8 +176,8 @@ Block load_step(
 void store_step(
     Block block,
     uint thread_3,
-    threadgroup type_3& left,
-    threadgroup type_3& right
+    threadgroup type_6& left,
+    threadgroup type_6& right
 ) {
     metal::uint2 _e2 = loaded_block(thread_3);
     uint at_1 = ((4u * _e2.y) * TILE_VECTORS) + _e2.x;
@@ -204,8 +205,8 @@ metal::uint2 tile_place(
 void multiply_add(
     thread Tile& tile,
     metal::uint2 place,
-    threadgroup type_3& left,
-    threadgroup type_3& right
+    threadgroup type_6& left,
+    threadgroup type_6& right
 ) {
     uint k = 0u;
     bool loop_init = true;
@@ -270,12 +271,12 @@ Tile product(
     uint first,
     uint end,
     uint thread_5,
-    threadgroup type_3& left,
-    threadgroup type_3& right,
     thread uint& first_output,
     constant NetworkLayer& layer,
-    device type_6 const& activations,
+    device type_5 const& activations,
     thread uint& first_input,
+    threadgroup type_6& left,
+    threadgroup type_6& right,
     constant _mslBufferSizes& _buffer_sizes
 ) {
     Tile tile_1 = Tile {};
@@ -328,7 +329,7 @@ void store_row(
     thread uint& first_output,
     constant NetworkLayer& layer,
     thread uint& first_input,
-    device type_6& parts,
+    device type_5& parts,
     thread uint& first_vector,
     constant _mslBufferSizes& _buffer_sizes
 ) {
@@ -363,7 +364,7 @@ void store_pair(
     thread uint& first_output,
     constant NetworkLayer& layer,
     thread uint& first_input,
-    device type_6& parts,
+    device type_5& parts,
     thread uint& first_vector,
     constant _mslBufferSizes& _buffer_sizes
 ) {
@@ -378,7 +379,7 @@ void store_tile(
     thread uint& first_output,
     constant NetworkLayer& layer,
     thread uint& first_input,
-    device type_6& parts,
+    device type_5& parts,
     thread uint& first_vector,
     constant _mslBufferSizes& _buffer_sizes
 ) {
@@ -394,42 +395,70 @@ void store_tile(
     return;
 }
 
-void store_bias(
-    metal::float4 loaded,
+metal::float4 multiply(
+    uint first_2,
+    uint end_1,
     uint thread_7,
-    threadgroup type_3& left,
     thread uint& first_output,
     constant NetworkLayer& layer,
-    device type_6& parts,
+    device type_5 const& activations,
+    thread uint& first_input,
+    threadgroup type_6& left,
+    threadgroup type_6& right,
+    device type_5& parts,
+    thread uint& first_vector,
+    constant _mslBufferSizes& _buffer_sizes
+) {
+    Tile _e3 = product(first_2, end_1, thread_7, first_output, layer, activations, first_input, left, right, _buffer_sizes);
+    store_tile(_e3, thread_7, first_output, layer, first_input, parts, first_vector, _buffer_sizes);
+    return _e3.loaded;
+}
+
+metal::float4 sum_of_rows(
+    metal::float4 loaded,
+    uint thread_8,
+    threadgroup type_6& left
+) {
+    metal::threadgroup_barrier(metal::mem_flags::mem_threadgroup);
+    metal::uint2 _e2 = loaded_block(thread_8);
+    if (thread_8 < 128u) {
+        left.inner[(4u * _e2.x) + _e2.y] = loaded;
+    }
+    metal::threadgroup_barrier(metal::mem_flags::mem_threadgroup);
+    uint first_3 = 4u * naga_mod(thread_8, TILE_VECTORS);
+    metal::float4 _e18 = left.inner[first_3];
+    metal::float4 _e23 = left.inner[first_3 + 1u];
+    metal::float4 _e29 = left.inner[first_3 + 2u];
+    metal::float4 _e34 = left.inner[first_3 + 3u];
+    return (_e18 + _e23) + (_e29 + _e34);
+}
+
+void store_bias(
+    metal::float4 loaded_1,
+    uint thread_9,
+    thread uint& first_output,
+    constant NetworkLayer& layer,
+    threadgroup type_6& left,
+    device type_5& parts,
     thread uint& first_vector,
     constant _mslBufferSizes& _buffer_sizes
 ) {
     bool local_1 = {};
-    metal::threadgroup_barrier(metal::mem_flags::mem_threadgroup);
-    metal::uint2 _e2 = loaded_block(thread_7);
-    if (thread_7 < 128u) {
-        left.inner[(4u * _e2.x) + _e2.y] = loaded;
-    }
-    metal::threadgroup_barrier(metal::mem_flags::mem_threadgroup);
-    uint _e13 = first_output;
-    uint output_2 = _e13 + (4u * thread_7);
-    if (thread_7 < TILE_VECTORS) {
-        uint _e23 = layer.outputs;
-        local_1 = output_2 < _e23;
+    metal::float4 _e2 = sum_of_rows(loaded_1, thread_9, left);
+    uint _e4 = first_output;
+    uint output_2 = _e4 + (4u * thread_9);
+    if (thread_9 < TILE_VECTORS) {
+        uint _e14 = layer.outputs;
+        local_1 = output_2 < _e14;
     } else {
         local_1 = false;
     }
-    bool _e26 = local_1;
-    if (_e26) {
-        metal::float4 _e31 = left.inner[4u * thread_7];
-        metal::float4 _e38 = left.inner[(4u * thread_7) + 1u];
-        metal::float4 _e46 = left.inner[(4u * thread_7) + 2u];
-        metal::float4 _e53 = left.inner[(4u * thread_7) + 3u];
-        metal::float4 sum = (_e31 + _e38) + (_e46 + _e53);
-        uint _e58 = first_vector;
-        uint _e61 = layer.outputs;
-        uint _e64 = layer.inputs;
-        parts[_e58 + naga_div((_e61 * _e64) + output_2, 4u)] = sum;
+    bool _e17 = local_1;
+    if (_e17) {
+        uint _e20 = first_vector;
+        uint _e23 = layer.outputs;
+        uint _e26 = layer.inputs;
+        parts[_e20 + naga_div((_e23 * _e26) + output_2, 4u)] = _e2;
         return;
     } else {
         return;
@@ -441,11 +470,11 @@ struct deform_weights_backwardInput {
 [[max_total_threads_per_threadgroup(256)]] kernel void deform_weights_backward(
   metal::uint3 group [[threadgroup_position_in_grid]]
 , uint thread_ [[thread_index_in_threadgroup]]
-, threadgroup type_3& left
-, threadgroup type_3& right
 , constant NetworkLayer& layer [[user(fake0)]]
-, device type_6 const& activations [[user(fake0)]]
-, device type_6& parts [[user(fake0)]]
+, device type_5 const& activations [[user(fake0)]]
+, threadgroup type_6& left
+, threadgroup type_6& right
+, device type_5& parts [[user(fake0)]]
 , constant NetworkChunk& chunk [[user(fake0)]]
 , constant _mslBufferSizes& _buffer_sizes [[user(fake0)]]
 ) {
@@ -464,11 +493,11 @@ struct deform_weights_backwardInput {
     uint _e42 = layer.most_parts;
     uint _e43 = sum_parts(_e39, _e42);
     uint _e46 = chunk.steps;
+    uint first_step = naga_div(_e46 * group.y, _e43);
     uint _e52 = chunk.steps;
-    Tile _e58 = product(naga_div(_e46 * group.y, _e43), naga_div(_e52 * (group.y + 1u), _e43), thread_, left, right, first_output, layer, activations, first_input, _buffer_sizes);
-    store_tile(_e58, thread_, first_output, layer, first_input, parts, first_vector, _buffer_sizes);
+    metal::float4 _e58 = multiply(first_step, naga_div(_e52 * (group.y + 1u), _e43), thread_, first_output, layer, activations, first_input, left, right, parts, first_vector, _buffer_sizes);
     if (naga_mod(group.x, input_tiles) == 0u) {
-        store_bias(_e58.loaded, thread_, left, first_output, layer, parts, first_vector, _buffer_sizes);
+        store_bias(_e58, thread_, first_output, layer, left, parts, first_vector, _buffer_sizes);
         return;
     } else {
         return;

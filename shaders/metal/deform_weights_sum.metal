@@ -34,6 +34,7 @@ struct NetworkLayer {
     uint encoded_inputs;
     uint row_vectors;
     uint most_parts;
+    uint head_row;
 };
 typedef metal::float4 type_4[1];
 constant uint MAX_GROUPS_PER_ROW = 65535u;

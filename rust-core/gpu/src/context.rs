@@ -70,9 +70,9 @@ impl Gpu {
             DeviceProfile::Full | DeviceProfile::Apple => adapter.features() & optional_features(),
         };
         let experimental = if features.contains(wgpu::Features::EXPERIMENTAL_COOPERATIVE_MATRIX) {
-            // SAFETY: cooperative matrices are used in one kernel, whose loads and stores stay
-            // inside its own workgroup memory and weight buffer, and which is used only after its
-            // results have been compared with those of the plain kernel on this device.
+            // SAFETY: cooperative matrices are used in two kinds of kernels, whose loads and stores
+            // stay inside their own workgroup memory and the weights, and which are used only after
+            // their results have been compared with those of plain kernels on this device.
             unsafe { wgpu::ExperimentalFeatures::enabled() }
         } else {
             wgpu::ExperimentalFeatures::disabled()
@@ -217,8 +217,8 @@ impl Gpu {
         limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
     }
 
-    /// Whether the device has what the matrix kernel of the network was written for: products of
-    /// 16 × 16 × 16 halves summed in 32 bits, subgroups of 32, and room for its workgroup memory.
+    /// Whether the device has what the matrix kernels of the network were written for: products of
+    /// 16 × 16 × 16 halves summed in 32 bits, subgroups of 32, and room for their workgroup memory.
     #[must_use]
     pub fn has_matrices(&self) -> bool {
         let wanted = wgpu::Features::EXPERIMENTAL_COOPERATIVE_MATRIX | wgpu::Features::SHADER_F16;
@@ -260,5 +260,5 @@ impl Gpu {
     }
 }
 
-/// Workgroup memory of deform_matrix.wgsl, bytes.
+/// Workgroup memory of deform_matrix.wgsl, which takes most, bytes.
 const MATRIX_KERNEL_MEMORY: u32 = 16_896 * 2 + 2048 * 4;

@@ -7,7 +7,7 @@ use trapeze_scene::ShDegree;
 
 use crate::deform::NetworkPrecision;
 use crate::differentiable::DifferentiableKernels;
-use crate::differentiable_deformation::DeformationKernels;
+use crate::differentiable_deformation::{DeformationKernels, NetworkProducts};
 use crate::harmonics::HarmonicsStorage;
 use crate::kernel::{Binding, Interface};
 use crate::sort::SortKernels;
@@ -30,6 +30,8 @@ pub(crate) struct Kernels {
     deform_matrix: OnceLock<(Interface, wgpu::ComputePipeline)>,
     differentiable: OnceLock<DifferentiableKernels>,
     deformation: OnceLock<DeformationKernels>,
+    deformation_split: OnceLock<DeformationKernels>,
+    split_products_agree: OnceLock<bool>,
 }
 
 /// Bindings of the network's kernels.
@@ -95,6 +97,8 @@ impl Kernels {
             deform_matrix: OnceLock::new(),
             differentiable: OnceLock::new(),
             deformation: OnceLock::new(),
+            deformation_split: OnceLock::new(),
+            split_products_agree: OnceLock::new(),
         }
     }
 
@@ -147,9 +151,19 @@ impl Kernels {
         self.differentiable.get_or_init(|| DifferentiableKernels::new(gpu))
     }
 
-    /// The passes over a network under training.
-    pub(crate) fn deformation(&self, gpu: &Gpu) -> &DeformationKernels {
-        self.deformation.get_or_init(|| DeformationKernels::new(gpu))
+    /// The passes over a network under training; with split products only for devices that have
+    /// cooperative matrices.
+    pub(crate) fn deformation(&self, gpu: &Gpu, products: NetworkProducts) -> &DeformationKernels {
+        let kernels = match products {
+            NetworkProducts::Single => &self.deformation,
+            NetworkProducts::Split => &self.deformation_split,
+        };
+        kernels.get_or_init(|| DeformationKernels::new(gpu, products))
+    }
+
+    /// Whether split products are what they should be on this device; found out by `probe` once.
+    pub(crate) fn split_products_agree(&self, probe: impl FnOnce() -> bool) -> bool {
+        *self.split_products_agree.get_or_init(probe)
     }
 
     /// The network on cooperative matrices; only for devices that have them.

@@ -145,6 +145,7 @@ pub(crate) struct NetworkLayer {
     pub encoded_inputs: u32,
     pub row_vectors: u32,
     pub most_parts: u32,
+    pub head_row: u32,
 }
 
 /// `Presentation` of present.wgsl.
@@ -300,6 +301,7 @@ mod tests {
             encoded_inputs,
             row_vectors,
             most_parts,
+            head_row,
         );
         assert_same_layout!(shaders::PRESENT, Presentation, background, image, texture);
         assert_same_layout!(

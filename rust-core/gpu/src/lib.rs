@@ -35,7 +35,9 @@ pub use device_report::DeviceReport;
 pub use differentiable::{
     DifferentiableRenderer, ForwardSettings, FrameStatus, ImageGradientBuffers, PassTimes,
 };
-pub use differentiable_deformation::{DeformationTimes, DifferentiableDeformation};
+pub use differentiable_deformation::{
+    DeformationTimes, DifferentiableDeformation, NetworkProducts,
+};
 pub use error::GpuError;
 pub use harmonics::HarmonicsStorage;
 pub use memory::{MemoryPlan, MemoryRequest, PlannedBuffer, SceneSize};

@@ -261,7 +261,8 @@ pub const OPTIONAL: [Shader; 2] = [DEFORM_HALF, DEFORM_MATRIX];
 /// All shaders: what is validated and translated to Metal.
 #[cfg(test)]
 pub(crate) fn every_shader() -> impl Iterator<Item = Shader> {
-    ALL.into_iter().chain(OPTIONAL).chain(network::ALL).chain(training::ALL)
+    let optional = OPTIONAL.into_iter().chain(network::OPTIONAL);
+    ALL.into_iter().chain(optional).chain(network::ALL).chain(training::ALL)
 }
 
 /// The common files behind the positional encoding, for its test.

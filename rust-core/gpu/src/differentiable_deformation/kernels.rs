@@ -1,6 +1,8 @@
 //! Pipelines of the network under training.
 
+use super::NetworkProducts;
 use crate::kernel::{Binding, Interface};
+use crate::shaders::network;
 use crate::{Gpu, shaders};
 
 /// The kernels, in the order of both passes.
@@ -32,34 +34,44 @@ pub(super) struct Kernel {
 pub(crate) struct DeformationKernels([Kernel; STAGES]);
 
 impl DeformationKernels {
-    pub(crate) fn new(gpu: &Gpu) -> Self {
+    /// Those for split products only on devices that [have matrices](Gpu::has_matrices).
+    pub(crate) fn new(gpu: &Gpu, products: NetworkProducts) -> Self {
         use Binding::{Read, Uniform, UniformAt, Write};
-        let kernel = |shader: shaders::Shader, bindings: &[Binding]| {
+        let entry = |shader: shaders::Shader, entry_point: &str, bindings: &[Binding]| {
             let interface = Interface::new(gpu, shader.name, &shader.source(), bindings);
-            Kernel { pipeline: interface.pipeline(gpu, shader.name, &[]), interface }
+            Kernel { pipeline: interface.pipeline(gpu, entry_point, &[]), interface }
+        };
+        let kernel =
+            |shader: shaders::Shader, bindings: &[Binding]| entry(shader, shader.name, bindings);
+        // The variants of a product share their entry point.
+        let product = |single: shaders::Shader, split, bindings: &[Binding]| match products {
+            NetworkProducts::Single => entry(single, single.name, bindings),
+            NetworkProducts::Split => entry(split, single.name, bindings),
         };
         Self([
-            kernel(shaders::network::ENCODE, &[UniformAt, Read, Write, Read]),
-            kernel(shaders::network::LAYER, &[Uniform, Read, Write]),
+            kernel(network::ENCODE, &[UniformAt, Read, Write, Read]),
+            product(network::LAYER, network::LAYER_SPLIT, &[Uniform, Read, Write]),
             kernel(
-                shaders::network::APPLY,
+                network::APPLY,
                 &[UniformAt, Uniform, Read, Read, Read, Read, Read, Write, Write, Write, Read],
             ),
+            kernel(network::HOLD, &[UniformAt, Read, Read, Read, Read, Read, Write, Write, Write]),
+            kernel(network::HOLD_BACKWARD, &[UniformAt, Read, Read, Read, Read, Write, Write]),
             kernel(
-                shaders::network::HOLD,
-                &[UniformAt, Read, Read, Read, Read, Read, Write, Write, Write],
-            ),
-            kernel(
-                shaders::network::HOLD_BACKWARD,
-                &[UniformAt, Read, Read, Read, Read, Write, Write],
-            ),
-            kernel(
-                shaders::network::APPLY_BACKWARD,
+                network::APPLY_BACKWARD,
                 &[UniformAt, Uniform, Read, Read, Read, Read, Write, Write, Write, Read],
             ),
-            kernel(shaders::network::WEIGHTS_BACKWARD, &[UniformAt, Uniform, Read, Write]),
-            kernel(shaders::network::WEIGHTS_SUM, &[UniformAt, Uniform, Read, Write]),
-            kernel(shaders::network::LAYER_BACKWARD, &[Uniform, Read, Write]),
+            product(
+                network::WEIGHTS_BACKWARD,
+                network::WEIGHTS_BACKWARD_SPLIT,
+                &[UniformAt, Uniform, Read, Write],
+            ),
+            kernel(network::WEIGHTS_SUM, &[UniformAt, Uniform, Read, Write]),
+            product(
+                network::LAYER_BACKWARD,
+                network::LAYER_BACKWARD_SPLIT,
+                &[Uniform, Read, Write],
+            ),
         ])
     }
 

@@ -25,6 +25,10 @@
 //! a splat (2 forward, 2 for the weights, 3 for its input), 40 000 splats × 8 layers 2.3 GB, 0.7 ms at
 //! 3.3 TB/s if nothing stays in caches. 37 dispatches behind each other cost about 0.1 ms. Prediction: 4
 //! to 5 ms.
+//!
+//! Products on cooperative matrices ([`NetworkProducts::Split`]) have three times the products at sixteen
+//! times the speed: 0.35 ms for 118 GFLOP. Predicted was a third of the network's time; what came is nine
+//! tenths (docs/negative-results.md): splitting and laying out the factors takes longer than multiplying.
 
 mod bindings;
 mod buffers;
@@ -32,12 +36,14 @@ mod chunk;
 mod dispatches;
 mod kernels;
 mod network_layout;
+mod products;
 mod resting;
 #[cfg(test)]
 mod tests;
 mod times;
 
 pub(crate) use kernels::DeformationKernels;
+pub use products::NetworkProducts;
 pub use times::DeformationTimes;
 
 use std::time::Duration;
@@ -66,6 +72,7 @@ const BLOCK_STRIDE: u32 = 256;
 #[derive(Debug)]
 pub struct DifferentiableDeformation {
     gpu: Gpu,
+    products: NetworkProducts,
     layout: NetworkLayout,
     /// Splats that there is room for.
     capacity: u32,
@@ -83,7 +90,8 @@ pub struct DifferentiableDeformation {
 
 impl DifferentiableDeformation {
     /// Room for `capacity` splats, with activations of at most `activation_budget` bytes (those of
-    /// 128 splats at least). The parameters are those of `network`, the gradients zero.
+    /// 128 splats at least), and single products. The parameters are those of `network`, the gradients
+    /// zero.
     ///
     /// # Errors
     /// [`GpuError::Untrainable`] names what the kernels do not train (time networks, screw motions,
@@ -96,15 +104,33 @@ impl DifferentiableDeformation {
         capacity: u32,
         activation_budget: u64,
     ) -> Result<Self, GpuError> {
+        let products = NetworkProducts::Single;
+        Self::with_products(gpu, network, parameters, capacity, activation_budget, products)
+    }
+
+    /// The same with products of this kind; single ones where the device has no other.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new).
+    pub fn with_products(
+        gpu: &Gpu,
+        network: &DeformationNetwork,
+        parameters: &[f32],
+        capacity: u32,
+        activation_budget: u64,
+        products: NetworkProducts,
+    ) -> Result<Self, GpuError> {
+        let products = if gpu.has_matrices() { products } else { NetworkProducts::Single };
         let mut layout = NetworkLayout::new(network)?;
         let columns = columns_within(&layout, capacity, activation_budget.min(gpu.max_binding()));
         layout.layers.iter_mut().for_each(|layer| layer.row_vectors = columns / 4);
         let buffers = NetworkBuffers::new(gpu, &layout, capacity, columns)?;
-        let kernels = gpu.kernels().deformation(gpu);
+        let kernels = gpu.kernels().deformation(gpu, products);
         let bind = |i| LayerBindings::new(gpu, kernels, &buffers, i as u32);
         let layers = (0..layout.layers.len()).map(bind).collect();
         let this = Self {
             gpu: gpu.clone(),
+            products,
             capacity,
             columns,
             layers,
@@ -141,6 +167,12 @@ impl DifferentiableDeformation {
         let mut layout = self.layout.clone();
         layout.layers.iter_mut().for_each(|layer| layer.row_vectors = 0);
         capacity <= self.capacity && layout.fits(network)
+    }
+
+    /// How its products are computed.
+    #[must_use]
+    pub fn products(&self) -> NetworkProducts {
+        self.products
     }
 
     /// The weights and biases: [`parameter_count`](Self::parameter_count) floats, in an order of its
@@ -222,7 +254,7 @@ impl DifferentiableDeformation {
         time: f32,
     ) -> Result<(), GpuError> {
         let gpu = self.gpu.clone();
-        let kernels = gpu.kernels().deformation(&gpu);
+        let kernels = gpu.kernels().deformation(&gpu, self.products);
         let list = self.forward_dispatches(canonical, time)?;
         list.iter().for_each(|dispatch| dispatch.record(kernels, pass));
         Ok(())
@@ -241,7 +273,7 @@ impl DifferentiableDeformation {
         gradients: &ParameterBuffers,
     ) -> Result<(), GpuError> {
         let gpu = self.gpu.clone();
-        let kernels = gpu.kernels().deformation(&gpu);
+        let kernels = gpu.kernels().deformation(&gpu, self.products);
         let list = self.backward_dispatches(canonical, gradients)?;
         list.iter().for_each(|dispatch| dispatch.record(kernels, pass));
         Ok(())
@@ -258,7 +290,8 @@ impl DifferentiableDeformation {
         time: f32,
     ) -> Result<Option<DeformationTimes>, GpuError> {
         let gpu = self.gpu.clone();
-        timed(&gpu, &self.forward_dispatches(canonical, time)?)
+        let kernels = gpu.kernels().deformation(&gpu, self.products);
+        timed(&gpu, kernels, &self.forward_dispatches(canonical, time)?)
     }
 
     /// Runs [`backward`](Self::backward), waits, and returns what each kernel took; `None` where the
@@ -272,7 +305,8 @@ impl DifferentiableDeformation {
         gradients: &ParameterBuffers,
     ) -> Result<Option<DeformationTimes>, GpuError> {
         let gpu = self.gpu.clone();
-        timed(&gpu, &self.backward_dispatches(canonical, gradients)?)
+        let kernels = gpu.kernels().deformation(&gpu, self.products);
+        timed(&gpu, kernels, &self.backward_dispatches(canonical, gradients)?)
     }
 
     /// Makes bindings fit, and writes the uniform blocks.
@@ -287,7 +321,7 @@ impl DifferentiableDeformation {
         self.write_chunks(&chunks, resting, time);
         self.evaluated = Some(canonical.count);
         let bound = self.forward.take().filter(|bound| bound.are_of(canonical));
-        let kernels = self.gpu.kernels().deformation(&self.gpu);
+        let kernels = self.gpu.kernels().deformation(&self.gpu, self.products);
         let make = || ForwardBindings::new(&self.gpu, kernels, &self.buffers, canonical);
         let bound = self.forward.insert(bound.unwrap_or_else(make));
         let layers = Layers { layers: &self.layout.layers, bindings: &self.layers };
@@ -310,7 +344,7 @@ impl DifferentiableDeformation {
         };
         let (chunks, resting) = self.chunks(canonical.count);
         let bound = self.backward.take().filter(|bound| bound.are_of(canonical, gradients));
-        let kernels = self.gpu.kernels().deformation(&self.gpu);
+        let kernels = self.gpu.kernels().deformation(&self.gpu, self.products);
         let make =
             || BackwardBindings::new(&self.gpu, kernels, &self.buffers, canonical, gradients);
         let bound = self.backward.insert(bound.unwrap_or_else(make));
@@ -343,12 +377,15 @@ impl DifferentiableDeformation {
 const DEFORMED_BYTES: u64 = 40;
 
 /// Runs dispatches, each in a pass of its own, waits for them, and adds up the times of each stage.
-fn timed(gpu: &Gpu, list: &[Dispatch<'_>]) -> Result<Option<DeformationTimes>, GpuError> {
+fn timed(
+    gpu: &Gpu,
+    kernels: &DeformationKernels,
+    list: &[Dispatch<'_>],
+) -> Result<Option<DeformationTimes>, GpuError> {
     if 2 * list.len() > wgpu::QUERY_SET_MAX_QUERIES as usize {
         return Ok(None);
     }
     let Some(timer) = Timer::of_stages(gpu, list.len() as u32)? else { return Ok(None) };
-    let kernels = gpu.kernels().deformation(gpu);
     let mut encoder = gpu.device().create_command_encoder(&Default::default());
     for (i, dispatch) in (0..).zip(list) {
         let mut pass = begin_pass(&mut encoder, "deform", i, Some(timer.queries()));

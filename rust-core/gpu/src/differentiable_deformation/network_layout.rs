@@ -68,6 +68,7 @@ impl NetworkLayout {
                 encoded_inputs,
                 row_vectors: 0,
                 most_parts: SUM_WORKGROUPS.div_ceil(tiles),
+                head_row: row_of(depth),
             });
             at += outputs * inputs + outputs;
         }

@@ -10,7 +10,11 @@ macro_rules! wgsl {
 }
 
 const NETWORK: &str = wgsl!("common/network");
+const ENABLE_MATRIX: &str = wgsl!("common/enable_matrix");
+const MATRIX_BLOCK: &str = wgsl!("common/matrix_block");
 const MATRIX_TILE: &str = wgsl!("common/matrix_tile");
+const MATRIX_TILE_SPLIT: &str = wgsl!("common/matrix_tile_split");
+const HALF_SCALE: &str = wgsl!("common/half_scale");
 const ACTIVATION_BLOCK: &str = wgsl!("common/activation_block");
 const WEIGHT_BLOCK: &str = wgsl!("common/weight_block");
 const DEFORMED_PARAMETERS: &str = wgsl!("common/deformed_parameters");
@@ -24,7 +28,29 @@ pub const ENCODE: Shader = Shader {
 /// A hidden layer.
 pub const LAYER: Shader = Shader {
     name: "deform_layer",
-    parts: &[NETWORK, MATRIX_TILE, ACTIVATION_BLOCK, WEIGHT_BLOCK, wgsl!("deform_layer")],
+    parts: &[
+        NETWORK,
+        MATRIX_BLOCK,
+        MATRIX_TILE,
+        ACTIVATION_BLOCK,
+        WEIGHT_BLOCK,
+        wgsl!("deform_layer"),
+    ],
+};
+/// [`LAYER`] on cooperative matrices; only where the device has them, as the two below.
+pub const LAYER_SPLIT: Shader = Shader {
+    name: "deform_layer_split",
+    parts: &[
+        ENABLE_MATRIX,
+        NETWORK,
+        MATRIX_BLOCK,
+        MATRIX_TILE_SPLIT,
+        HALF_SCALE,
+        ACTIVATION_BLOCK,
+        WEIGHT_BLOCK,
+        wgsl!("deform_layer"),
+        wgsl!("deform_layer_scales"),
+    ],
 };
 /// The heads, and the deformed splats.
 pub const APPLY: Shader = Shader {
@@ -85,18 +111,60 @@ pub const HOLD_BACKWARD: Shader = Shader {
 /// The mirror of a layer by its input.
 pub const LAYER_BACKWARD: Shader = Shader {
     name: "deform_layer_backward",
-    parts: &[NETWORK, MATRIX_TILE, ACTIVATION_BLOCK, WEIGHT_BLOCK, wgsl!("deform_layer_backward")],
+    parts: &[
+        NETWORK,
+        MATRIX_BLOCK,
+        MATRIX_TILE,
+        ACTIVATION_BLOCK,
+        WEIGHT_BLOCK,
+        wgsl!("deform_layer_backward"),
+    ],
+};
+/// [`LAYER_BACKWARD`] on cooperative matrices.
+pub const LAYER_BACKWARD_SPLIT: Shader = Shader {
+    name: "deform_layer_backward_split",
+    parts: &[
+        ENABLE_MATRIX,
+        NETWORK,
+        MATRIX_BLOCK,
+        MATRIX_TILE_SPLIT,
+        HALF_SCALE,
+        ACTIVATION_BLOCK,
+        WEIGHT_BLOCK,
+        wgsl!("deform_layer_backward"),
+        wgsl!("deform_layer_backward_scales"),
+    ],
 };
 /// The mirror of a layer by its parameters, in parts.
 pub const WEIGHTS_BACKWARD: Shader = Shader {
     name: "deform_weights_backward",
-    parts: &[NETWORK, MATRIX_TILE, ACTIVATION_BLOCK, wgsl!("deform_weights_backward")],
+    parts: &[
+        NETWORK,
+        MATRIX_BLOCK,
+        MATRIX_TILE,
+        ACTIVATION_BLOCK,
+        wgsl!("deform_weights_backward"),
+    ],
+};
+/// [`WEIGHTS_BACKWARD`] on cooperative matrices.
+pub const WEIGHTS_BACKWARD_SPLIT: Shader = Shader {
+    name: "deform_weights_backward_split",
+    parts: &[
+        ENABLE_MATRIX,
+        NETWORK,
+        MATRIX_BLOCK,
+        MATRIX_TILE_SPLIT,
+        HALF_SCALE,
+        ACTIVATION_BLOCK,
+        wgsl!("deform_weights_backward"),
+        wgsl!("deform_weights_backward_scales"),
+    ],
 };
 /// The sum of these parts.
 pub const WEIGHTS_SUM: Shader =
     Shader { name: "deform_weights_sum", parts: &[DISPATCH, NETWORK, wgsl!("deform_weights_sum")] };
 
-/// All of them.
+/// All that any device can run.
 pub const ALL: [Shader; 9] = [
     ENCODE,
     LAYER,
@@ -108,3 +176,6 @@ pub const ALL: [Shader; 9] = [
     WEIGHTS_BACKWARD,
     WEIGHTS_SUM,
 ];
+
+/// Those that need cooperative matrices.
+pub const OPTIONAL: [Shader; 3] = [LAYER_SPLIT, LAYER_BACKWARD_SPLIT, WEIGHTS_BACKWARD_SPLIT];

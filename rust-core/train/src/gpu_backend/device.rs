@@ -85,7 +85,7 @@ pub(super) fn load(
         Some(run) => run,
         None => Run::new(device, state, capacity, options.initial_entries)?,
     };
-    run.load_network(device, state, options.activation_budget)?;
+    run.load_network(device, state, options)?;
     let mut encoder = device.gpu.device().create_command_encoder(&Default::default());
     run.renderer.record_resume(&mut encoder);
     device.gpu.queue().submit([encoder.finish()]);
@@ -113,7 +113,7 @@ impl Run {
         &mut self,
         device: &DeviceSide,
         state: &TrainingState,
-        activation_budget: u64,
+        options: &GpuBackendOptions,
     ) -> Result<(), GpuError> {
         let last = self.network.take();
         let Some(trained) = &state.network else { return Ok(()) };
@@ -127,7 +127,14 @@ impl Run {
             return Ok(());
         }
         let (counts, reports) = (self.renderer.counts(), &reports.buffer);
-        let place = Place { capacity, activation_budget, counts, reports };
+        let products = options.network_products.suited(gpu, &state.splats.positions);
+        let place = Place {
+            capacity,
+            activation_budget: options.activation_budget,
+            products,
+            counts,
+            reports,
+        };
         let mut stage = NetworkStage::upload(gpu, kernels, trained, place)?;
         stage.rest(state.resting.clone())?;
         self.network = Some(stage);

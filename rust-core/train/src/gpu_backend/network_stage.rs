@@ -2,7 +2,9 @@
 //! there, as those of the splats do.
 
 use trapeze_gpu::compute::{Groups, dispatch, whole};
-use trapeze_gpu::{DeformationTimes, DifferentiableDeformation, Gpu, GpuError, ParameterBuffers};
+use trapeze_gpu::{
+    DeformationTimes, DifferentiableDeformation, Gpu, GpuError, NetworkProducts, ParameterBuffers,
+};
 use trapeze_scene::DeformationNetwork;
 use trapeze_scene::deformation::RestingSplats;
 
@@ -20,6 +22,8 @@ pub(super) struct Place<'a> {
     pub(super) capacity: u32,
     /// Bytes of the activations of a chunk of splats.
     pub(super) activation_budget: u64,
+    /// How products are computed.
+    pub(super) products: NetworkProducts,
     /// Counts of the frame, and the ring of reports.
     pub(super) counts: &'a wgpu::Buffer,
     pub(super) reports: &'a wgpu::Buffer,
@@ -59,13 +63,14 @@ impl NetworkStage {
     ) -> Result<Self, GpuError> {
         let network = trained.network.clone();
         let parameters = network_parameters(&network);
-        let Place { capacity, activation_budget, .. } = place;
-        let deformation = DifferentiableDeformation::new(
+        let Place { capacity, activation_budget, products, .. } = place;
+        let deformation = DifferentiableDeformation::with_products(
             gpu,
             &network,
             &parameters,
             capacity,
             activation_budget,
+            products,
         )?;
         let moments = |label, values: &[f32]| gpu.storage_of(label, &deformation.pack(values));
         let first_moments = moments("first moments of the network", &trained.first_moments)?;

@@ -1,6 +1,6 @@
 //! What a run on the GPU may use.
 
-use trapeze_gpu::Gpu;
+use trapeze_gpu::{Gpu, NetworkProducts};
 
 /// What the GPU may use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,6 +15,8 @@ pub struct GpuBackendOptions {
     /// Bytes that the deformation network's hidden features may take: 8.5 KB a splat, of as many
     /// splats at a time as fit. When not all do, each step evaluates the network twice for most.
     pub activation_budget: u64,
+    /// How the deformation network's products are computed, where that suits device and scene.
+    pub network_products: NetworkProducts,
 }
 
 impl Default for GpuBackendOptions {
@@ -25,6 +27,7 @@ impl Default for GpuBackendOptions {
             memory_budget: 8 << 30,
             initial_entries: None,
             activation_budget: 512 << 20,
+            network_products: NetworkProducts::Single,
         }
     }
 }

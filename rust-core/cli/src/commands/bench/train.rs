@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use fearless_simd::Level;
 use serde::Serialize;
 use trapeze_formats::dataset::Dataset;
-use trapeze_gpu::DeviceReport;
+use trapeze_gpu::{DeviceReport, Gpu, NetworkProducts};
 use trapeze_scene::FrameSettings;
 use trapeze_train::backend::TrainingBackend;
 use trapeze_train::config::TrainingConfig;
@@ -182,10 +182,18 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CliError> {
         }
         Backend::Gpu => {
             let gpu = open_gpu()?;
-            let options = GpuBackendOptions { memory_budget: u64::MAX, ..Default::default() };
-            let backend = GpuBackend::new(&gpu, options)?;
+            let deformation = deformation_for_training(&dataset, arguments.steps)?;
+            let moves = !arguments.rests && deformation.is_some();
+            for (name, products) in products_of(&gpu, moves) {
+                let options = GpuBackendOptions {
+                    memory_budget: u64::MAX,
+                    network_products: products,
+                    ..Default::default()
+                };
+                let backend = GpuBackend::new(&gpu, options)?;
+                measure(measured(arguments, &dataset, backend, name, arguments.steps, stages)?);
+            }
             device = Some(DeviceReport::of(&gpu));
-            measure(measured(arguments, &dataset, backend, "gpu", arguments.steps, stages)?);
         }
     }
     let report = Report {
@@ -199,6 +207,17 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CliError> {
         machine: Machine::this(),
     };
     if arguments.json { print_json(&report) } else { print_text(&report) }
+}
+
+/// The ways to compute a network's products that the device has; one where nothing moves.
+fn products_of(gpu: &Gpu, moves: bool) -> Vec<(&'static str, NetworkProducts)> {
+    let single = ("gpu, network in f32", NetworkProducts::Single);
+    let split = ("gpu, network on cooperative matrices", NetworkProducts::Split);
+    match NetworkProducts::Split.suited(gpu, &[]) {
+        _ if !moves => vec![("gpu", NetworkProducts::Single)],
+        NetworkProducts::Single => vec![single],
+        NetworkProducts::Split => vec![single, split],
+    }
 }
 
 fn on_level(level: Level) -> CpuBackend {

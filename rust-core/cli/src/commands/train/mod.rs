@@ -15,6 +15,7 @@ use clap::{Args, ValueEnum};
 use sysinfo::System;
 use trapeze_formats::dataset::Dataset;
 use trapeze_formats::load_scene;
+use trapeze_gpu::NetworkProducts;
 use trapeze_train::backend::TrainingBackend;
 use trapeze_train::trainer::{Event, TrainingSummary};
 use trapeze_train::{
@@ -54,6 +55,10 @@ pub(crate) struct Arguments {
     /// File format of the splats.
     #[arg(long, value_enum, default_value_t)]
     format: SceneFormat,
+    /// Compute the network of a scene that moves on the GPU's matrix units, where it has them: each number
+    /// as the sum of two halves.
+    #[arg(long)]
+    split_products: bool,
     /// Megabytes that the run may take; by default what the system has available.
     #[arg(long, value_name = "MB")]
     memory_limit: Option<u64>,
@@ -104,7 +109,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), CliError> {
             train(arguments, &dataset, &folder, trainer)
         }
         Backend::Gpu => {
-            let trainer = Trainer::resume(&dataset, config, gpu_backend(limit)?, options)?;
+            let trainer =
+                Trainer::resume(&dataset, config, gpu_backend(arguments, limit)?, options)?;
             train(arguments, &dataset, &folder, trainer)
         }
     }
@@ -130,9 +136,13 @@ impl Backend {
 }
 
 /// Training on the device that GPU commands run on.
-fn gpu_backend(limit: u64) -> Result<GpuBackend, CliError> {
+fn gpu_backend(arguments: &Arguments, limit: u64) -> Result<GpuBackend, CliError> {
     let gpu = open_gpu()?;
-    Ok(GpuBackend::new(&gpu, GpuBackendOptions::within(&gpu, limit))?)
+    let mut options = GpuBackendOptions::within(&gpu, limit);
+    if arguments.split_products {
+        options.network_products = NetworkProducts::Split;
+    }
+    Ok(GpuBackend::new(&gpu, options)?)
 }
 
 fn train<B: TrainingBackend>(

@@ -14,31 +14,33 @@ fn resting(n: usize) -> RestingSplats {
 
 #[test]
 fn splats_that_move_are_deformed_and_differentiated_as_if_they_were_alone() {
-    let Some(gpu) = device() else { return };
     let network = network(3, 64);
     let (splats, by_deformed) = (splats(&network, 300), gradients(300));
     let resting = resting(300);
     let alone = |i: usize| by_deformed[i];
     let moving = resting.moving();
     let by_moving: Vec<[f32; 10]> = moving.iter().map(|&i| alone(i as usize)).collect();
-    let expected = run(&gpu, &network, &splats.gather(moving), &by_moving, AMPLE);
-    for budget in [AMPLE, 1] {
-        let found = run_beside(&gpu, &network, &splats, &by_deformed, budget, Some(&resting));
-        assert_eq!(found.deformed.gather(moving), expected.deformed);
-        assert_eq!(found.by_canonical.gather(moving), expected.by_canonical);
-        // In chunks the sums are added up in another order.
-        let exact: Vec<f64> = expected.by_parameters.iter().copied().map(f64::from).collect();
-        assert!(difference(&found.by_parameters, &exact) <= TOLERANCE, "{budget}");
+    for device in devices() {
+        let expected = run(&device, &network, &splats.gather(moving), &by_moving);
+        for budget in [AMPLE, 1] {
+            let device = device.within(budget);
+            let found = run_beside(&device, &network, &splats, &by_deformed, Some(&resting));
+            assert_eq!(found.deformed.gather(moving), expected.deformed);
+            assert_eq!(found.by_canonical.gather(moving), expected.by_canonical);
+            // In chunks the sums are added up in another order.
+            let exact: Vec<f64> = expected.by_parameters.iter().copied().map(f64::from).collect();
+            assert!(difference(&found.by_parameters, &exact) <= TOLERANCE, "{budget}");
+        }
     }
 }
 
 #[test]
 fn splats_that_rest_get_what_they_hold_and_their_gradients_pass_by_the_network() {
-    let Some(gpu) = device() else { return };
+    let Some(device) = devices().pop() else { return };
     let mut network = network(3, 64);
     let (splats, by_deformed) = (splats(&network, 100), gradients(100));
     let resting = resting(100);
-    let found = run_beside(&gpu, &network, &splats, &by_deformed, AMPLE, Some(&resting));
+    let found = run_beside(&device, &network, &splats, &by_deformed, Some(&resting));
     for (i, held) in resting.resting().zip(resting.held()) {
         let (i, held) = (i as usize, held.map(f64::from));
         // A network that says the same of every splat.
