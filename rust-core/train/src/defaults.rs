@@ -101,13 +101,16 @@ pub fn deformation_for_training(
 /// Adam, which looks at the sign of a gradient more than at its size, the pressure on opacities is
 /// enough to make a splat vanish that most photographs say nothing about
 /// ([`DeformationTraining::undisturbed`]). On a scene of five objects the usual settings lost both
-/// balls that bounce through it (docs/negative-results.md).
+/// balls that bounce through it (docs/negative-results.md). And a search grows by a little at a time.
 pub fn prepare_for_motion(config: &mut TrainingConfig) {
     let Some(densification) = &mut config.densification else { return };
     let undisturbed = (f64::from(config.steps) * UNDISTURBED_SHARE) as u32;
     densification.start = densification.start.max(undisturbed);
     let random_count = RANDOM_SPLATS_IN_MOTION.min(densification.max_splats);
     config.initial = InitialSplats { random_count, opacity: 0.1, scale: 1.0 };
+    if let Some(search) = &mut config.search {
+        search.gradual = true;
+    }
 }
 
 /// The times of the training views, ascending, each once. Views without a time are at 0.

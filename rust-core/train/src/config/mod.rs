@@ -127,6 +127,8 @@ pub struct BudgetSearch {
     pub least_gain: f64,
     /// Growth that is tried first, as a share of the splats.
     pub growth: f64,
+    /// Whether a branch grows over the first half of its trial, and not at once: for what moves.
+    pub gradual: bool,
     /// Whether splats leave that are not worth keeping.
     pub thinning: bool,
     /// Steps of a trial, as a share of the run.
@@ -143,6 +145,7 @@ impl Default for BudgetSearch {
         Self {
             least_gain: 0.1,
             growth: 0.4,
+            gradual: false,
             thinning: true,
             trial: 1.0 / 14.0,
             validation: 8,

@@ -1,9 +1,10 @@
 //! How the branch of a trial grows.
 //!
 //! Many copies at once set a run back: those of what moves have to part in time as well as in place,
-//! and until they have, the photographs of other moments are worse off. So a branch grows as a run
+//! and until they have, the photographs of other moments are worse off. So there a branch grows as a run
 //! without a search does, by a little in every densification step, and stays as it is for the second
-//! half of its trial, in which what has grown shows what it is good for.
+//! half of its trial, in which what has grown shows what it is good for. What rests grows at once
+//! ([`BudgetSearch::gradual`](crate::config::BudgetSearch::gradual)).
 
 use crate::config::TrainingConfig;
 
@@ -15,13 +16,14 @@ pub(super) struct Growth {
 
 impl Growth {
     /// From `from` splats to `to`, in equal ratios, over the densification steps in the first half of
-    /// the trial that begins at step `begin`; at once at its beginning, where these are fewer than two
-    /// or nothing grows.
+    /// the trial that begins at step `begin`; at once at its beginning, where the search is not gradual,
+    /// these are fewer than two, or nothing grows.
     pub(super) fn new(config: &TrainingConfig, begin: u32, (from, to): (u32, u32)) -> Self {
         let middle = begin.saturating_add(config.trial_steps().div_ceil(2));
         let is_due = |step: &u32| config.densification.is_some_and(|set| set.is_due(*step));
         let mut steps: Vec<u32> = (begin..middle).filter(is_due).collect();
-        if steps.len() < 2 || to <= from {
+        let is_gradual = config.search.is_some_and(|search| search.gradual);
+        if !is_gradual || steps.len() < 2 || to <= from {
             steps = vec![begin];
         }
         let changes = steps.len() as f64;
@@ -45,9 +47,11 @@ impl Growth {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::BudgetSearch;
 
     fn growth(steps: u32, begin: u32, to: u32) -> Vec<(u32, u32)> {
-        let config = TrainingConfig::automatic(steps, 1_000_000);
+        let mut config = TrainingConfig::automatic(steps, 1_000_000);
+        config.search = Some(BudgetSearch { gradual: true, ..BudgetSearch::default() });
         Growth::new(&config, begin, (10_000, to)).changes
     }
 
@@ -83,6 +87,12 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn what_rests_grows_at_once() {
+        let config = TrainingConfig::automatic(7_000, 1_000_000);
+        assert_eq!(Growth::new(&config, 500, (10_000, 14_000)).changes, [(500, 14_000)]);
     }
 
     #[test]

@@ -10,8 +10,9 @@
 //! scene's numbers, or cost less than that per halving.
 //!
 //! First the set grows, in a stride twice as long where growth brought far more than it had to, until
-//! it was refused twice in a row, or four times where the scene moves. A branch takes its stride over the first half of its trial, by a
-//! little in every densification step, as a run without a search grows.
+//! it was refused twice in a row, or four times where the scene moves. There a branch takes its stride
+//! over the first half of its trial, by a little in every densification step, as a run without a search
+//! grows.
 //!
 //! Growth duplicates what is opaque, not what will be good for something: then those splats leave that
 //! the image would miss least ([`RemovalCosts`](crate::densify::RemovalCosts)), as many as the same

@@ -19,11 +19,14 @@ pub(super) fn searching(steps: u32) -> TrainingConfig {
     config
 }
 
-/// The same with several densification steps in every trial.
+/// The same with several densification steps in every trial, and growth over them.
 pub(super) fn frequently_searching(steps: u32) -> TrainingConfig {
     let mut config = searching(steps);
     if let Some(densification) = &mut config.densification {
         densification.interval = steps / 112;
+    }
+    if let Some(search) = &mut config.search {
+        search.gradual = true;
     }
     config
 }
