@@ -143,7 +143,7 @@ pub struct BudgetSearch {
 impl Default for BudgetSearch {
     fn default() -> Self {
         Self {
-            least_gain: 0.1,
+            least_gain: 0.05,
             growth: 0.4,
             gradual: false,
             thinning: true,

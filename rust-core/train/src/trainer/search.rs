@@ -14,11 +14,13 @@
 //! over the first half of its trial, by a little in every densification step, as a run without a search
 //! grows.
 //!
-//! Growth duplicates what is opaque, not what will be good for something: then those splats leave that
-//! the image would miss least ([`RemovalCosts`](crate::densify::RemovalCosts)), as many as the same
-//! price says, until hardly any are to go or their leaving is refused. Last come bands, for a set where
-//! each splat has more to show. Then, or when the set has to stay as it is, the search ends and the
-//! validation views are trained on.
+//! Then come bands. And growth duplicates what is opaque, not what will be good for something: in the
+//! last trials that there is time for, those splats leave that the image would miss least
+//! ([`RemovalCosts`](crate::densify::RemovalCosts)), as many as the same price says, until hardly any
+//! are to go or their leaving is refused. Not before: what a copy is good for shows long after it was
+//! made, and a set that is thinned as soon as it has grown loses what it would have become
+//! (docs/negative-results.md). Bands that the whole set had no room for are tried on the thinned one.
+//! When nothing is left to try, the search ends and the validation views are trained on.
 //!
 //! Nothing is tried that takes more numbers than [`BudgetSearch::most_numbers`], for splats and bands
 //! alike: photographs say only so much, and what is tried is what the memory has to hold.
@@ -41,9 +43,9 @@ const REFUSALS_OF_GROWTH: usize = 2;
 const REFUSALS_IN_MOTION: usize = 4;
 /// Growth that brought this many times what it had to is tried in a stride twice as long.
 const GENEROUS: f64 = 2.0;
-/// Trials that growth leaves time for: to thin what has grown, and to try a band.
+/// Trials that growth leaves time for, in which the set is thinned.
 const TRIALS_AFTER_GROWTH: u32 = 2;
-/// The same in a scene that moves, where growth may try until then: to thin twice, and to try two bands.
+/// The same in a scene that moves, where growth may try until then.
 const TRIALS_AFTER_GROWTH_IN_MOTION: u32 = 4;
 
 /// What a trial changes.
@@ -63,6 +65,8 @@ pub enum Direction {
     Change(Proposal),
     /// To fewer splats; how many depends on what they are worth.
     FewerSplats,
+    /// Nowhere yet: the set grows no more, and it is too early to thin it.
+    Wait,
 }
 
 /// A trial and its evidence.
@@ -125,18 +129,22 @@ impl Search {
             Some(_) => (REFUSALS_IN_MOTION, TRIALS_AFTER_GROWTH_IN_MOTION),
             None => (REFUSALS_OF_GROWTH, TRIALS_AFTER_GROWTH),
         };
-        let has_time_to_grow = config.has_time_for_trials(step, 1 + trials_after_growth);
-        if grown > self.splats && has_time_to_grow && !self.has_grown(most_refusals) {
+        let is_early = config.has_time_for_trials(step, 1 + trials_after_growth);
+        if is_early && grown > self.splats && !self.has_grown(most_refusals) {
             return Some(Direction::Change(Proposal::Splats(grown)));
         }
-        if settings.thinning && !self.is_thin {
+        let has_to_thin = settings.thinning && !self.is_thin;
+        if has_to_thin && !is_early {
             return Some(Direction::FewerSplats);
         }
         let is_refused = self.trials.iter().any(|trial| trial.is_band() && !trial.kept);
         let degree = self.sh_degree + 1;
         let has_more_bands = degree <= config.sh_degree
             && settings.most_numbers.is_none_or(|most| numbers(self.splats, degree) <= most);
-        (has_more_bands && !is_refused).then_some(Direction::Change(Proposal::ShDegree(degree)))
+        if has_more_bands && !is_refused {
+            return Some(Direction::Change(Proposal::ShDegree(degree)));
+        }
+        has_to_thin.then_some(Direction::Wait)
     }
 
     /// Whether growth is over: refused in its long stride and in its short one, or already followed
@@ -235,7 +243,7 @@ impl TrainingConfig {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::DeformationTraining;
+    use crate::config::{DeformationTraining, Densification};
 
     fn config() -> TrainingConfig {
         TrainingConfig::automatic(1400, 40_000)
@@ -255,29 +263,32 @@ mod tests {
         }
     }
 
-    /// Runs the search with a rule that says what pays; what is worth keeping is half the splats, until
-    /// that is fewer than 6 000.
+    /// Runs the search from the first densification step on, with a rule that says what pays; what is
+    /// worth keeping is half the splats, until that is fewer than 6 000.
     fn run(pays: impl Fn(&Search, Proposal) -> bool) -> Search {
         run_with(&config(), pays)
     }
 
     fn run_with(config: &TrainingConfig, pays: impl Fn(&Search, Proposal) -> bool) -> Search {
         let mut search = Search::new(10_000);
-        let step = config.densification.unwrap().start;
+        let mut step = config.trial_steps();
         while let Some(direction) = search.next(config, step) {
             let proposal = match direction {
-                Direction::Change(proposal) => proposal,
+                Direction::Change(proposal) => Some(proposal),
                 Direction::FewerSplats if search.splats / 2 >= 6_000 => {
-                    Proposal::Splats(search.splats / 2)
+                    Some(Proposal::Splats(search.splats / 2))
                 }
                 Direction::FewerSplats => {
                     search.is_thin = true;
                     continue;
                 }
+                Direction::Wait => None,
             };
-            let kept = pays(&search, proposal);
-            search.record(trial(&search, proposal, kept));
-            assert!(search.trials.len() < 20);
+            if let Some(proposal) = proposal {
+                let kept = pays(&search, proposal);
+                search.record(Trial { step, ..trial(&search, proposal, kept) });
+            }
+            step += config.trial_steps();
         }
         search
     }
@@ -299,12 +310,26 @@ mod tests {
     }
 
     #[test]
-    fn what_always_pays_grows_to_the_ceiling_is_thinned_and_gets_all_bands() {
+    fn what_always_pays_grows_to_the_ceiling_gets_all_bands_and_is_thinned() {
         let search = run(|_, _| true);
         assert_eq!((search.splats, search.sh_degree), (10_000, 3));
-        let splats: Vec<u32> = search.trials.iter().map(|trial| trial.splats).collect();
+        let tried: Vec<Proposal> = search.trials.iter().map(|trial| trial.proposal).collect();
         // Every trial brings far more than it has to: the second stride is the square of the first.
-        assert_eq!(splats, [10_000, 14_000, 27_440, 40_000, 20_000, 10_000, 10_000, 10_000]);
+        let grown = [14_000, 27_440, 40_000].map(Proposal::Splats);
+        let bands = [1, 2, 3].map(Proposal::ShDegree);
+        let thinned = [20_000, 10_000].map(Proposal::Splats);
+        assert_eq!(tried, [&grown[..], &bands, &thinned].concat());
+    }
+
+    #[test]
+    fn thinning_waits_for_the_last_two_trials() {
+        // Trials of 100 steps; the last one may begin at 1 067.
+        for pays in [true, false] {
+            let search = run(|_, proposal| pays && proposal != Proposal::ShDegree(1));
+            let thinnings = search.trials.iter().filter(|trial| trial.is_thinning());
+            let steps: Vec<u32> = thinnings.map(|trial| trial.step).collect();
+            assert_eq!(steps, if pays { &[900, 1_000][..] } else { &[] });
+        }
     }
 
     #[test]
@@ -317,7 +342,7 @@ mod tests {
         let [first, second, third, fourth, fifth] =
             [14_000, 27_440, 19_600, 38_416, 27_440].map(Proposal::Splats);
         let thinned = Proposal::Splats(9_800);
-        assert_eq!(tried, [first, second, third, fourth, fifth, thinned, Proposal::ShDegree(1)]);
+        assert_eq!(tried, [first, second, third, fourth, fifth, Proposal::ShDegree(1), thinned]);
         assert_eq!((search.splats, search.is_thin), (19_600, true));
     }
 
@@ -325,15 +350,20 @@ mod tests {
     fn nothing_is_tried_that_takes_more_numbers_than_allowed() {
         // As many as 30 000 splats have without bands.
         let allowed = BudgetSearch { most_numbers: Some(420_000), ..BudgetSearch::default() };
-        let config = TrainingConfig { search: Some(allowed), ..config() };
+        let mut config = TrainingConfig { search: Some(allowed), ..config() };
         let search = run_with(&config, |_, _| true);
-        let splats = search.trials.iter().map(|trial| trial.splats);
-        assert!(splats.eq([10_000, 14_000, 27_440, 30_000, 15_000, 7_500, 7_500]));
-        // 7 500 splats of degree 2 have 285 000, of degree 3 442 500.
-        assert_eq!((search.splats, search.sh_degree), (7_500, 2));
+        let tried: Vec<Proposal> = search.trials.iter().map(|trial| trial.proposal).collect();
+        // No room for bands before the set is thin, and no time for them then.
+        assert_eq!(tried, [14_000, 27_440, 30_000, 15_000, 7_500].map(Proposal::Splats));
+        // A set that is thin at once has the time: 11 000 splats of degree 1 have 253 000 numbers, of
+        // degree 2 418 000, of degree 3 649 000.
+        config.densification =
+            config.densification.map(|set| Densification { max_splats: 11_000, ..set });
+        let search = run_with(&config, |_, proposal| matches!(proposal, Proposal::ShDegree(_)));
+        assert_eq!((search.splats, search.sh_degree), (10_000, 2));
         let none = BudgetSearch { most_numbers: Some(0), ..BudgetSearch::default() };
         let config = TrainingConfig { search: Some(none), ..config };
-        assert_eq!(Search::new(10_000).next(&config, 500), Some(Direction::FewerSplats));
+        assert_eq!(Search::new(10_000).next(&config, 500), Some(Direction::Wait));
     }
 
     #[test]

@@ -62,6 +62,7 @@ impl<B: TrainingBackend> Trainer<B> {
                 let Some(kept) = &kept else { return self.leave_thinned(observer) };
                 Some(Proposal::Splats(kept.len() as u32))
             }
+            Some(Direction::Wait) => return Ok(()),
             None => None,
         };
         if proposal.is_none() {
