@@ -58,6 +58,8 @@ const NOISY_SHARE: f64 = 0.5;
 const UNDISTURBED_SHARE: f64 = 3.0 / 20.0;
 /// Share of a run before splats that do not move leave the network: by then it knows what moves.
 const REST_SHARE: f64 = 0.5;
+/// Adam's β₂ in a scene that moves: it looks back over a hundred steps, not a thousand.
+const BETA2_IN_MOTION: f64 = 0.99;
 /// Random splats that a scene that moves begins with, at most.
 const RANDOM_SPLATS_IN_MOTION: u32 = 15_000;
 /// Noise of the time at its first step, by the time between two photographs.
@@ -91,7 +93,12 @@ pub fn deformation_for_training(
     }))
 }
 
-/// Changes the settings of a run that grows into those for a scene that moves.
+/// Changes the settings of a run into those for a scene that moves.
+///
+/// Gradients change their size within few steps there, those of the network's first layers a
+/// thousandfold when these begin to take part. As long as the second moment lags behind, Adam's steps are
+/// up to (1 − β₁)/√(1 − β₂) times the rate: three times with the usual β₂, which ruined three runs of
+/// eight; once with this one.
 ///
 /// What moves is in each place for a short time only. Without time, every splat there turns
 /// transparent, and relocation takes it away; with nothing there the network has nothing to move, and
@@ -101,8 +108,10 @@ pub fn deformation_for_training(
 /// Adam, which looks at the sign of a gradient more than at its size, the pressure on opacities is
 /// enough to make a splat vanish that most photographs say nothing about
 /// ([`DeformationTraining::undisturbed`]). On a scene of five objects the usual settings lost both
-/// balls that bounce through it (docs/negative-results.md). And a search grows by a little at a time.
+/// balls that bounce through it. And a search grows by a little at a time. The figures are in
+/// docs/negative-results.md.
 pub fn prepare_for_motion(config: &mut TrainingConfig) {
+    config.adam.beta2 = BETA2_IN_MOTION;
     let Some(densification) = &mut config.densification else { return };
     let undisturbed = (f64::from(config.steps) * UNDISTURBED_SHARE) as u32;
     densification.start = densification.start.max(undisturbed);
@@ -146,9 +155,11 @@ mod tests {
         config.validate().unwrap();
         assert_eq!(config.densification.unwrap().start, 3_000);
         assert_eq!((config.initial.random_count, config.initial.opacity), (15_000, 0.1));
+        assert_eq!(config.adam.beta2, 0.99);
         let mut fixed = TrainingConfig::fixed(20_000);
         prepare_for_motion(&mut fixed);
-        assert_eq!(fixed, TrainingConfig::fixed(20_000));
+        let adam = config.adam;
+        assert_eq!(fixed, TrainingConfig { adam, ..TrainingConfig::fixed(20_000) });
     }
 
     #[test]

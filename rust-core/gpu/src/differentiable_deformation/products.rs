@@ -18,18 +18,21 @@ pub enum NetworkProducts {
 }
 
 impl NetworkProducts {
-    /// Largest coordinate of the splats of a scene that split products take, world units. There the
+    /// Largest coordinate of most splats of a scene that split products take, world units. There the
     /// rounding of the smallest weights, 2⁻³¹, is 2e-6 of a feature.
     pub const FARTHEST: f32 = 4096.0;
 
-    /// These, or single ones where the device has no others, computes them wrong, or the splats are too
-    /// far away. The first call for split ones on a device waits for a probe of them.
+    /// These, or single ones where the device has no others, computes them wrong, or half of the splats
+    /// are too far away: a few that have gone astray change nothing, so a run that is resumed goes on as
+    /// it began. The first call for split ones on a device waits for a probe of them.
     #[must_use]
     pub fn suited(self, gpu: &Gpu, positions: &[[f32; 3]]) -> Self {
-        let is_far = |x: &f32| x.is_finite() && x.abs() > Self::FARTHEST;
+        let is_far = |position: &&[f32; 3]| {
+            position.iter().any(|x| x.is_finite() && x.abs() > Self::FARTHEST)
+        };
         let is_suited = self == Self::Split
             && gpu.has_matrices()
-            && !positions.as_flattened().iter().any(is_far)
+            && 2 * positions.iter().filter(is_far).count() <= positions.len()
             && gpu.kernels().split_products_agree(|| agree(gpu));
         if is_suited { Self::Split } else { Self::Single }
     }

@@ -2,8 +2,7 @@
 
 use trapeze_gpu::compute::{read, whole};
 use trapeze_gpu::{
-    DifferentiableRenderer, ForwardSettings, Gpu, GpuError, ImageGradientBuffers, NetworkProducts,
-    ParameterBuffers,
+    DifferentiableRenderer, ForwardSettings, Gpu, GpuError, ImageGradientBuffers, ParameterBuffers,
 };
 use trapeze_scene::ShDegree;
 
@@ -129,13 +128,6 @@ impl Run {
         }
         let (counts, reports) = (self.renderer.counts(), &reports.buffer);
         let products = options.network_products.suited(gpu, &state.splats.positions);
-        if products != options.network_products {
-            tracing::warn!(
-                "the network trains in 32 bits: split products need a GPU with matrix units, and \
-                 splats within {} of the origin",
-                NetworkProducts::FARTHEST
-            );
-        }
         let place = Place {
             capacity,
             activation_budget: options.activation_budget,

@@ -15,19 +15,20 @@ pub struct GpuBackendOptions {
     /// Bytes that the deformation network's hidden features may take: 8.5 KB a splat, of as many
     /// splats at a time as fit. When not all do, each step evaluates the network twice for most.
     pub activation_budget: u64,
-    /// How the deformation network's products are computed, where that suits device and scene.
+    /// How the deformation network's products are computed, where that suits device and scene; single
+    /// precision elsewhere.
     pub network_products: NetworkProducts,
 }
 
 impl Default for GpuBackendOptions {
-    /// 512 MiB of photographs, as much for hidden features, 8 GiB in all.
+    /// 512 MiB of photographs, as much for hidden features, 8 GiB in all; matrix units where there are any.
     fn default() -> Self {
         Self {
             target_budget: 512 << 20,
             memory_budget: 8 << 30,
             initial_entries: None,
             activation_budget: 512 << 20,
-            network_products: NetworkProducts::Single,
+            network_products: NetworkProducts::Split,
         }
     }
 }

@@ -14,7 +14,7 @@ use trapeze_train::config::TrainingConfig;
 use trapeze_train::evaluation::evaluate;
 use trapeze_train::{
     CpuBackend, CpuBackendOptions, GpuBackend, GpuBackendOptions, GpuStepTimes, ReferenceBackend,
-    Trainer, TrainerOptions, background_for_training, deformation_for_training,
+    Trainer, TrainerOptions, background_for_training, deformation_for_training, prepare_for_motion,
 };
 
 use super::super::render::open_gpu;
@@ -243,6 +243,9 @@ fn measured<B: TrainingBackend>(
     config.background = background_for_training(dataset)?;
     if !arguments.rests {
         config.deformation = deformation_for_training(dataset, config.steps)?;
+    }
+    if config.deformation.is_some() {
+        prepare_for_motion(&mut config);
     }
     let options = TrainerOptions { report_interval: u32::MAX, ..TrainerOptions::default() };
     let mut trainer = Trainer::start(dataset, config, backend, options)?;

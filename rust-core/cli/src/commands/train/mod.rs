@@ -55,10 +55,10 @@ pub(crate) struct Arguments {
     /// File format of the splats.
     #[arg(long, value_enum, default_value_t)]
     format: SceneFormat,
-    /// Compute the network of a scene that moves on the GPU's matrix units, where it has them: each number
+    /// Do not compute the network of a scene that moves on the GPU's matrix units, which take each number
     /// as the sum of two halves.
     #[arg(long)]
-    split_products: bool,
+    single_products: bool,
     /// Megabytes that the run may take; by default what the system has available.
     #[arg(long, value_name = "MB")]
     memory_limit: Option<u64>,
@@ -139,8 +139,8 @@ impl Backend {
 fn gpu_backend(arguments: &Arguments, limit: u64) -> Result<GpuBackend, CliError> {
     let gpu = open_gpu()?;
     let mut options = GpuBackendOptions::within(&gpu, limit);
-    if arguments.split_products {
-        options.network_products = NetworkProducts::Split;
+    if arguments.single_products {
+        options.network_products = NetworkProducts::Single;
     }
     Ok(GpuBackend::new(&gpu, options)?)
 }

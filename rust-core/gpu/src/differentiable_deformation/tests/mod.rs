@@ -312,9 +312,12 @@ fn a_splat_that_has_gone_astray_leaves_all_gradients_finite() {
 fn split_products_are_not_for_scenes_beyond_the_range_of_halves() {
     let Some(gpu) = device() else { return };
     let near = NetworkProducts::Split.suited(&gpu, &[]);
-    let at = |x: f32| NetworkProducts::Split.suited(&gpu, &[[0.0; 3], [0.0, -x, 1.0]]);
+    let at = |x: f32| NetworkProducts::Split.suited(&gpu, &[[0.0, -x, 1.0]]);
     assert_eq!(at(NetworkProducts::FARTHEST), near);
     assert_eq!(at(NetworkProducts::FARTHEST * 1.01), NetworkProducts::Single);
+    // One of two has gone astray.
+    let one_astray = [[0.0; 3], [0.0, 1e9, f32::NAN]];
+    assert_eq!(NetworkProducts::Split.suited(&gpu, &one_astray), near);
     // These are not drawn.
     assert_eq!(at(f32::NAN), near);
     assert_eq!(at(f32::INFINITY), near);
