@@ -89,6 +89,10 @@ impl Dataset {
         self.camera(index).map_or_else(Vec::new, rows_of)
     }
 
+    pub(crate) fn view_time(&self, index: usize) -> f32 {
+        self.dataset.views.get(index).and_then(|view| view.time).unwrap_or(0.0)
+    }
+
     fn camera(&self, index: usize) -> Option<&Camera> {
         self.dataset.views.get(index).map(|view| &view.camera)
     }

@@ -432,6 +432,8 @@ mod ffi {
         fn warnings(self: &Dataset) -> Vec<String>;
         fn view_lens(self: &Dataset, index: usize) -> Lens;
         fn view_world_to_camera(self: &Dataset, index: usize) -> Vec<f64>;
+        // 0 in a dataset without times.
+        fn view_time(self: &Dataset, index: usize) -> f32;
     }
 
     extern "Rust" {
@@ -458,7 +460,12 @@ mod ffi {
         // Writes the scene, measures it on the held-out views, removes the checkpoints.
         fn finish(self: &Trainer, work: &Work) -> Result<TestFigures, Failure>;
         fn report(self: &Trainer) -> TrainFigures;
-        fn preview(self: &Trainer, lens: Lens, world_to_camera: &[f64]) -> Result<Image, Failure>;
+        fn preview(
+            self: &Trainer,
+            lens: Lens,
+            world_to_camera: &[f64],
+            time: f32,
+        ) -> Result<Image, Failure>;
         fn trained_scene(self: &Trainer) -> Result<Scene, Failure>;
     }
 }

@@ -270,8 +270,13 @@ impl Trainer {
         self.with(|run| finish::finish(run, &self.device, &self.dataset, &self.folder, work))
     }
 
-    /// The splats as they are now, from a camera in world coordinates.
-    pub(crate) fn preview(&self, lens: Lens, world_to_camera: &[f64]) -> Result<Image, Failure> {
+    /// The splats as they are now at a time, from a camera in world coordinates.
+    pub(crate) fn preview(
+        &self,
+        lens: Lens,
+        world_to_camera: &[f64],
+        time: f32,
+    ) -> Result<Image, Failure> {
         self.with(|run| {
             let origin = DVec3::from(run.progress().origin);
             let camera = camera(&lens, world_to_camera)?.relative_to(origin);
@@ -279,7 +284,7 @@ impl Trainer {
                 Background::Fixed(color) => color,
                 Background::Random => [0.0; 3],
             };
-            let frame = run.render(&camera)?;
+            let frame = run.render(&camera, time)?;
             Ok(Image::new(Rgba8::of_colors(&frame, Some(background))))
         })
     }

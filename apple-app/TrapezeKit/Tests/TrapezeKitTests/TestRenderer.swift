@@ -155,8 +155,9 @@ actor TestTrainer: TrainEngine {
   }
 
   nonisolated var step: Int { counter.current }
-  nonisolated var cameras: [Camera] {
-    [OrbitPose().camera(in: Viewport(width: 4, height: 4))]
+  nonisolated var photographs: [Photograph] {
+    let camera = OrbitPose().camera(in: Viewport(width: 4, height: 4))
+    return [0, 0.5].map { Photograph(camera: camera, time: $0) }
   }
 
   nonisolated func run() -> AsyncThrowingStream<TrainEvent, any Error> {
@@ -179,8 +180,10 @@ actor TestTrainer: TrainEngine {
 
   func checkpoint() async throws { checkpoints.append(step) }
 
-  func preview(_ camera: Camera) async throws -> RenderedImage {
-    guard let image = RenderedImage(width: 1, height: 1, rgba: Data(count: 4)) else {
+  /// One pixel, whose red is the time.
+  func preview(_ photograph: Photograph) async throws -> RenderedImage {
+    let red = UInt8(255 * photograph.time)
+    guard let image = RenderedImage(width: 1, height: 1, rgba: Data([red, 0, 0, 255])) else {
       throw EngineError(.internalFault, "size")
     }
     return image

@@ -33,6 +33,23 @@ import Testing
     #expect(await model.scene()?.summary.splatCount == 200)
   }
 
+  @Test func theViewThatIsChosenIsShownAtTheTimeOfItsPhotograph() async throws {
+    let engine = TestEngine()
+    engine.trainer = TestTrainer(steps: 3)
+    let (model, _) = try await ready(engine)
+    model.start()
+    await model.settle()
+    try await eventually { model.preview?.rgba.first == 0 }
+    // While the picture of the second one is drawn, the first is chosen again.
+    model.previewView = 1
+    model.previewView = 0
+    model.previewView = 1
+    try await eventually { model.preview?.rgba.first == 127 }
+    model.previewView = 2
+    try await Task.sleep(for: .milliseconds(5))
+    #expect(model.viewCount == 2 && model.preview?.rgba.first == 127)
+  }
+
   @Test func pausingSavesAndResumingGoesOn() async throws {
     let engine = TestEngine()
     let (model, _) = try await ready(engine)

@@ -22,7 +22,7 @@ pub(super) trait TrainingRun: Send {
     fn summary(&self) -> TrainingSummary;
     fn advance(&mut self, observer: &mut dyn FnMut(Event)) -> Result<(), TrainError>;
     fn save(&mut self, observer: &mut dyn FnMut(Event)) -> Result<(), TrainError>;
-    fn render(&mut self, camera: &Camera) -> Result<Frame, TrainError>;
+    fn render(&mut self, camera: &Camera, time: f32) -> Result<Frame, TrainError>;
     fn scene(&mut self) -> Result<Scene, TrainError>;
 }
 
@@ -60,8 +60,8 @@ impl<B: TrainingBackend + Send> TrainingRun for Trainer<B> {
         Trainer::save(self, observer).map(drop)
     }
 
-    fn render(&mut self, camera: &Camera) -> Result<Frame, TrainError> {
-        Trainer::render(self, camera, 0.0)
+    fn render(&mut self, camera: &Camera, time: f32) -> Result<Frame, TrainError> {
+        Trainer::render(self, camera, time)
     }
 
     fn scene(&mut self) -> Result<Scene, TrainError> {

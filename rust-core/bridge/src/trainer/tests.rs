@@ -35,8 +35,12 @@ fn trainer(device: &Device, backend: Backend, folder: &Path) -> Result<Trainer, 
 
 /// A view as the app's screen shows it.
 fn preview(trainer: &Trainer) -> Image {
-    let dataset = dataset();
-    trainer.preview(dataset.view_lens(0), &dataset.view_world_to_camera(0)).unwrap()
+    preview_of(trainer, &dataset(), dataset().view_time(0))
+}
+
+/// The first view of a dataset at a time.
+fn preview_of(trainer: &Trainer, dataset: &Dataset, time: f32) -> Image {
+    trainer.preview(dataset.view_lens(0), &dataset.view_world_to_camera(0), time).unwrap()
 }
 
 /// Mean of the squared differences of 8-bit values.
@@ -148,6 +152,11 @@ fn photographs_of_many_times_leave_a_scene_folder_that_moves() {
     let moving = photographs("transforms_train.json");
     let run = make_trainer(&cpu, &moving, parameters, path.into(), &Work::new()).unwrap();
     advance_to(&run, STEPS);
+    let times: Vec<f32> = (0..moving.figures().views).map(|i| moving.view_time(i)).collect();
+    let [first, .., last] = times[..] else { panic!("{times:?}") };
+    assert!(first != last && moving.view_time(times.len()) == 0.0);
+    let [early, late] = [first, last].map(|time| preview_of(&run, &moving, time));
+    assert!(squared_error(&early, &late) > 0.0, "each moment looks as it is");
     assert!(run.finish(&Work::new()).unwrap().psnr > 5.0);
     for file in ["point_cloud.ply", "weights.bin", "mask.bin", "mask.json", "training.json"] {
         assert!(folder.path().join(file).exists(), "{file}");

@@ -2579,6 +2579,10 @@ extension DatasetRef {
     public func view_world_to_camera(_ index: UInt) -> RustVec<Double> {
         RustVec(ptr: __swift_bridge__$Dataset$view_world_to_camera(ptr, index))
     }
+
+    public func view_time(_ index: UInt) -> Float {
+        __swift_bridge__$Dataset$view_time(ptr, index)
+    }
 }
 extension Dataset: Vectorizable {
     public static func vecOfSelfNew() -> UnsafeMutableRawPointer {
@@ -2692,8 +2696,8 @@ extension TrainerRef {
         __swift_bridge__$Trainer$report(ptr).intoSwiftRepr()
     }
 
-    public func preview(_ lens: Lens, _ world_to_camera: UnsafeBufferPointer<Double>) throws -> Image {
-        try { let val = __swift_bridge__$Trainer$preview(ptr, lens.intoFfiRepr(), world_to_camera.toFfiSlice()); if val.is_ok { return Image(ptr: val.ok_or_err!) } else { throw Failure(ptr: val.ok_or_err!) } }()
+    public func preview(_ lens: Lens, _ world_to_camera: UnsafeBufferPointer<Double>, _ time: Float) throws -> Image {
+        try { let val = __swift_bridge__$Trainer$preview(ptr, lens.intoFfiRepr(), world_to_camera.toFfiSlice(), time); if val.is_ok { return Image(ptr: val.ok_or_err!) } else { throw Failure(ptr: val.ok_or_err!) } }()
     }
 
     public func trained_scene() throws -> Scene {

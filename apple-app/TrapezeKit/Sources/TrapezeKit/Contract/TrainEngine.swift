@@ -12,8 +12,8 @@ public protocol TrainEngine: AnyObject, Sendable {
   /// Saves the state on disk, so that another process can go on with the same bits.
   func checkpoint() async throws
 
-  /// The splats as they are now, from a camera.
-  func preview(_ camera: Camera) async throws -> RenderedImage
+  /// The splats as they are now, as a photograph's camera sees them at its time.
+  func preview(_ photograph: Photograph) async throws -> RenderedImage
 
   /// The scene as it is now.
   func scene() async throws -> any SceneEngine
@@ -21,8 +21,20 @@ public protocol TrainEngine: AnyObject, Sendable {
   /// Name of what it trains on: the graphics device, or the CPU.
   var deviceName: String { get }
 
-  /// Cameras of the dataset's views, for the live view.
-  var cameras: [Camera] { get }
+  /// Where and when the dataset's views were taken, for the live view.
+  var photographs: [Photograph] { get }
+}
+
+/// Where and when a view of a dataset was taken.
+public struct Photograph: Sendable, Equatable {
+  public var camera: Camera
+  /// Of the scene, 0 to 1; 0 in a dataset without times.
+  public var time: Float
+
+  public init(camera: Camera, time: Float) {
+    self.camera = camera
+    self.time = time
+  }
 }
 
 /// What a run is asked for.

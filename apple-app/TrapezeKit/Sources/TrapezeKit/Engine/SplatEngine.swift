@@ -68,12 +68,15 @@ public final class SplatEngine: Engine {
         memory_limit: configuration.memoryLimit ?? Self.availableMemory,
         backend: configuration.device.core
       )
-      let cameras = (0..<dataset.figures().views).map { index in
-        Camera(dataset.view_lens(index), rows: Array(dataset.view_world_to_camera(index)))
+      let photographs = (0..<dataset.figures().views).map { index in
+        Photograph(
+          camera: Camera(
+            dataset.view_lens(index), rows: Array(dataset.view_world_to_camera(index))),
+          time: dataset.view_time(index))
       }
       let trainer = try make_trainer(
         try openedDevice(work), dataset, parameters, configuration.folder.path, work)
-      return SplatTrainer(trainer, cameras: cameras)
+      return SplatTrainer(trainer, photographs: photographs)
     }
   }
 

@@ -4,14 +4,14 @@ internal import TrapezeBridge
 /// A training run of the core.
 public final class SplatTrainer: TrainEngine {
   private let core: TrapezeBridge.Trainer
-  public let cameras: [Camera]
+  public let photographs: [Photograph]
   /// Steps are taken in turns of a tenth of a second, each a block on this queue: a preview or a
   /// checkpoint gets in between two of them.
   private let queue = CoreQueue.serial("trapeze.trainer", qos: .utility)
 
-  init(_ core: TrapezeBridge.Trainer, cameras: [Camera]) {
+  init(_ core: TrapezeBridge.Trainer, photographs: [Photograph]) {
     self.core = core
-    self.cameras = cameras
+    self.photographs = photographs
   }
 
   public var deviceName: String { core.device_name().toString() }
@@ -82,9 +82,11 @@ public final class SplatTrainer: TrainEngine {
     try await queue.run { [self] in try core.checkpoint() }
   }
 
-  public func preview(_ camera: Camera) async throws -> RenderedImage {
+  public func preview(_ photograph: Photograph) async throws -> RenderedImage {
     try await queue.run { [self] in
-      try RenderedImage(camera.rows.withCoreSlice { try core.preview(camera.lens, $0) })
+      let camera = photograph.camera
+      return try RenderedImage(
+        camera.rows.withCoreSlice { try core.preview(camera.lens, $0, photograph.time) })
     }
   }
 

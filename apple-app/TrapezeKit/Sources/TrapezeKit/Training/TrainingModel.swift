@@ -28,7 +28,7 @@ public final class TrainingModel {
   public private(set) var notes: [String] = []
   public private(set) var savedStep: Int?
   public private(set) var preview: RenderedImage?
-  /// The view that is shown while it trains: an index into the dataset's cameras.
+  /// The view that is shown while it trains, at the time of its photograph: an index into the dataset.
   public var previewView = 0 { didSet { if previewView != oldValue { refreshPreview() } } }
   public private(set) var viewCount = 0
   public var failure: Failure?
@@ -101,7 +101,7 @@ public final class TrainingModel {
           .result { self.phase = .preparing($0) }
         guard self.access === access else { return }
         self.trainer = trainer
-        viewCount = trainer.cameras.count
+        viewCount = trainer.photographs.count
         deviceName = trainer.deviceName
         await follow(trainer)
       } catch {
@@ -196,16 +196,20 @@ public final class TrainingModel {
     refreshPreview()
   }
 
-  /// One picture at a time: a slow device draws fewer, training does not wait.
+  /// One picture at a time: a slow device draws fewer, training does not wait. The last one is of the
+  /// view that was chosen last.
   private func refreshPreview() {
-    guard drawing == nil, let trainer, trainer.cameras.indices.contains(previewView) else { return }
-    let camera = trainer.cameras[previewView]
+    guard drawing == nil, let trainer, trainer.photographs.indices.contains(previewView) else {
+      return
+    }
+    let view = previewView
     drawing = Task {
-      defer { drawing = nil }
       // A picture that fails is only a picture; the run tells its own faults.
-      if let image = try? await trainer.preview(camera), self.trainer === trainer {
-        preview = image
-      }
+      let image = try? await trainer.preview(trainer.photographs[view])
+      drawing = nil
+      guard self.trainer === trainer else { return }
+      if let image { preview = image }
+      if view != previewView { refreshPreview() }
     }
   }
 

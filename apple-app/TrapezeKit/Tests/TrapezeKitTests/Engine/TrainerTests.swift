@@ -22,7 +22,7 @@ import Testing
     let trainer = try await Engines.cpu
       .makeTrainer(dataset: Repository.sampleDataset, configuration: configuration).result()
     #expect(trainer.step == 0)
-    let camera = try #require(trainer.cameras.first)
+    let photograph = try #require(trainer.photographs.first)
     var steps: [Int] = []
     var finished: (TrainReport, TestFigures?)?
     for try await event in trainer.run() {
@@ -39,7 +39,7 @@ import Testing
     #expect(test.psnr > 5 && test.ssim > 0)
     #expect(trainer.step == 30)
 
-    let image = try await trainer.preview(camera)
+    let image = try await trainer.preview(photograph)
     #expect(image.width == 100 && image.colors.contains { $0 > 0 })
     let scene = try await trainer.scene()
     let file = configuration.folder.appending(path: "point_cloud.ply")
@@ -71,8 +71,8 @@ import Testing
       return
     }
     #expect(!first.deviceName.isEmpty && first.deviceName != "CPU")
-    let camera = try #require(first.cameras.first)
-    let start = try await first.preview(camera)
+    let photograph = try #require(first.photographs.first)
+    let start = try await first.preview(photograph)
     let reader = Task {
       for try await event in first.run() {
         if case .report = event { return }
@@ -81,7 +81,7 @@ import Testing
     try await reader.value
     try await first.checkpoint()
     #expect(first.step > 0)
-    #expect(try await first.preview(camera) != start)
+    #expect(try await first.preview(photograph) != start)
 
     let second =
       try await engine
