@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::{Camera, Splats};
+use crate::{Camera, Splats, sigmoid};
 
 /// Axis-aligned box in world units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,6 +57,9 @@ impl Bounds {
 /// Share of the splats that auto-framing leaves out at each end of each axis: captures have a few
 /// far-away floaters that would push the camera out of the room.
 const FRAMING_TRIM: f64 = 0.02;
+/// Splats below this opacity do not count for auto-framing: training by MCMC scatters the faint ones, up to
+/// a half of them, a hundred times as far as the scene is wide.
+const FRAMING_OPACITY: f64 = 0.05;
 
 impl Splats {
     /// Box around all finite centres, relative to the scene's origin.
@@ -65,23 +68,41 @@ impl Splats {
         Bounds::around(self.positions.iter().map(|&p| DVec3::from(p.map(f64::from))))
     }
 
-    /// Box from the 2nd to the 98th percentile of each coordinate, relative to the scene's origin.
+    /// Box from the 2nd to the 98th percentile of each coordinate, relative to the scene's origin, of the
+    /// splats that are not faint; of all where nothing else is there.
     #[must_use]
     pub fn framing_bounds(&self) -> Option<Bounds> {
-        let finite: Vec<[f32; 3]> =
-            self.positions.iter().copied().filter(|p| p.iter().all(|c| c.is_finite())).collect();
-        let last = finite.len().checked_sub(1)?;
-        let trim = (last as f64 * FRAMING_TRIM).floor() as usize;
-        let mut bounds = Bounds { min: DVec3::ZERO, max: DVec3::ZERO };
-        for axis in 0..3 {
-            let mut values: Vec<f32> = finite.iter().map(|p| p[axis]).collect();
-            let (_, &mut low, _) = values.select_nth_unstable_by(trim, f32::total_cmp);
-            let (_, &mut high, _) = values.select_nth_unstable_by(last - trim, f32::total_cmp);
-            bounds.min[axis] = f64::from(low);
-            bounds.max[axis] = f64::from(high);
+        let is_faint = |i: usize| {
+            let logit = self.opacity_logits.get(i);
+            logit.is_some_and(|&logit| sigmoid(f64::from(logit)) < FRAMING_OPACITY)
+        };
+        let finite = || self.positions.iter().copied().enumerate().filter(|(_, p)| is_finite(p));
+        let solid: Vec<[f32; 3]> =
+            finite().filter(|&(i, _)| !is_faint(i)).map(|(_, p)| p).collect();
+        if solid.is_empty() {
+            return trimmed_bounds(&finite().map(|(_, p)| p).collect::<Vec<_>>());
         }
-        Some(bounds)
+        trimmed_bounds(&solid)
     }
+}
+
+fn is_finite(position: &[f32; 3]) -> bool {
+    position.iter().all(|c| c.is_finite())
+}
+
+/// Box from the 2nd to the 98th percentile of each coordinate of finite points; `None` of none.
+fn trimmed_bounds(finite: &[[f32; 3]]) -> Option<Bounds> {
+    let last = finite.len().checked_sub(1)?;
+    let trim = (last as f64 * FRAMING_TRIM).floor() as usize;
+    let mut bounds = Bounds { min: DVec3::ZERO, max: DVec3::ZERO };
+    for axis in 0..3 {
+        let mut values: Vec<f32> = finite.iter().map(|p| p[axis]).collect();
+        let (_, &mut low, _) = values.select_nth_unstable_by(trim, f32::total_cmp);
+        let (_, &mut high, _) = values.select_nth_unstable_by(last - trim, f32::total_cmp);
+        bounds.min[axis] = f64::from(low);
+        bounds.max[axis] = f64::from(high);
+    }
+    Some(bounds)
 }
 
 /// View direction for auto-framing.
@@ -128,6 +149,23 @@ mod tests {
         assert_eq!(bounds.min, DVec3::new(1.0, -1.0, 1.0));
         assert_eq!(bounds.max, DVec3::new(3.0, 1.0, 2.0));
         assert_eq!(Bounds::around([]), None);
+    }
+
+    #[test]
+    fn framing_leaves_out_what_is_faint_unless_nothing_else_is_there() {
+        let positions: Vec<[f32; 3]> =
+            (0..100).map(|i| [if i % 2 == 0 { 1.0 } else { 90.0 }, i as f32, 0.0]).collect();
+        let logits = |faint: f32| (0..100).map(|i| if i % 2 == 0 { 0.0 } else { faint }).collect();
+        let splats = |opacity_logits| Splats {
+            positions: positions.clone(),
+            opacity_logits,
+            ..Splats::default()
+        };
+        let width = |splats: &Splats| splats.framing_bounds().unwrap().max.x;
+        assert_eq!(width(&splats(logits(-5.0))), 1.0);
+        assert_eq!(width(&splats(logits(-2.0))), 90.0);
+        assert_eq!(width(&splats(vec![-5.0; 100])), 90.0);
+        assert_eq!(width(&splats(Vec::new())), 90.0);
     }
 
     #[test]

@@ -105,6 +105,18 @@ impl Splats {
         }
     }
 
+    /// The splats that can be drawn, ascending: α is at most the opacity, and below 1/255 it is skipped in
+    /// every pixel. What rounding could lift to 1/255 is among them.
+    #[must_use]
+    pub fn drawable(&self) -> Vec<u32> {
+        const LEAST_OPACITY: f64 = (1.0 - 1e-6) / 255.0;
+        let logits = (0..).zip(&self.opacity_logits);
+        logits
+            .filter(|&(_, &logit)| sigmoid(f64::from(logit)) >= LEAST_OPACITY)
+            .map(|(i, _)| i)
+            .collect()
+    }
+
     /// The smallest degree that holds every non-zero coefficient: bands that are all zero cost
     /// memory and time in every frame and show nothing.
     #[must_use]
@@ -178,6 +190,14 @@ mod tests {
             sh_rest: (0..2 * k).map(|i| i as f32 + 1.0).collect(),
             sh_degree: degree,
         }
+    }
+
+    #[test]
+    fn what_no_pixel_shows_is_not_drawable() {
+        let logit = |opacity: f64| (opacity / (1.0 - opacity)).ln() as f32;
+        let logits = [0.0, logit(0.9 / 255.0), logit(1.0 / 255.0), f32::NAN, f32::NEG_INFINITY];
+        let splats = Splats { opacity_logits: logits.to_vec(), ..Splats::default() };
+        assert_eq!(splats.drawable(), [0, 2]);
     }
 
     #[test]

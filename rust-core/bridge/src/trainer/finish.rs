@@ -42,8 +42,10 @@ pub(super) fn finish(
     work: &Work,
 ) -> Result<TestFigures, Failure> {
     let mut summary = run.summary();
+    let scene = run.scene()?;
+    summary.count(&scene);
     let (scene, motion) =
-        with_measured_motion(run.scene()?, dataset, || work.flow(Stage::Measuring, None))?;
+        with_measured_motion(scene, dataset, || work.flow(Stage::Measuring, None))?;
     summary.motion = motion;
     work.step(Stage::Writing, None)?;
     save_scene_folder(folder, &scene)?;

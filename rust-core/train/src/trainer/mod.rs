@@ -187,13 +187,18 @@ impl<B: TrainingBackend> Trainer<B> {
         Ok(self.backend.render(camera, &settings)?)
     }
 
-    /// The scene as it is now. SH bands that are zero are left out, and so is a network that has not
-    /// moved anything yet. Waits.
+    /// The scene as it is now. SH bands that are zero are left out, and so are splats that no pixel can
+    /// show and a network that has not moved anything yet. Waits.
     ///
     /// # Errors
     /// [`TrainError::Backend`] when the device fails.
     pub fn scene(&mut self) -> Result<Scene, TrainError> {
-        let TrainingState { splats, network, .. } = self.backend.state()?;
+        let TrainingState { mut splats, network, .. } = self.backend.state()?;
+        let drawable = splats.drawable();
+        // A scene of nothing would show the same, but helps nobody.
+        if !drawable.is_empty() && drawable.len() < splats.len() {
+            splats = splats.gather(&drawable);
+        }
         let degree = splats.used_sh_degree();
         Ok(Scene {
             origin: self.progress.origin.into(),

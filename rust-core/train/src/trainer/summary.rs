@@ -1,6 +1,7 @@
 //! What is kept of a run beside its scene.
 
 use serde::{Deserialize, Serialize};
+use trapeze_scene::Scene;
 
 use super::{Search, Trainer, TrainingMemory};
 use crate::MotionSummary;
@@ -18,8 +19,11 @@ pub struct TrainingSummary {
     pub seconds: f64,
     /// Steps by seconds: trials whose steps were not kept lower it.
     pub steps_per_second: f64,
-    /// Number of splats.
+    /// Number of splats; of a finished run, those of its scene.
     pub splats: u32,
+    /// Splats that were trained and left out of the scene, since no pixel can show them.
+    #[serde(default)]
+    pub left_out: u32,
     /// SH degree that was trained.
     pub sh_degree: u32,
     /// How often the run went back to a good state because of a fault.
@@ -54,6 +58,7 @@ impl<B: TrainingBackend> Trainer<B> {
             seconds,
             steps_per_second: f64::from(self.step) / seconds.max(f64::MIN_POSITIVE),
             splats: self.backend.splat_count(),
+            left_out: 0,
             sh_degree: self.sh_degree() as u32,
             rollbacks: self.progress.rollbacks,
             rate_factor: self.progress.rate_factor,
@@ -65,5 +70,14 @@ impl<B: TrainingBackend> Trainer<B> {
             rest: self.config.deformation.map(|_| self.progress.rest),
             test: None,
         }
+    }
+}
+
+impl TrainingSummary {
+    /// Counts the splats of the scene that came out.
+    pub fn count(&mut self, scene: &Scene) {
+        let splats = scene.len() as u32;
+        self.left_out = self.splats.saturating_sub(splats);
+        self.splats = splats;
     }
 }

@@ -181,6 +181,7 @@ fn train<B: TrainingBackend>(
     display.finish();
     let scene = trainer.scene()?;
     let mut summary = trainer.summary();
+    summary.count(&scene);
     drop(trainer);
     let (scene, motion) = with_measured_motion(scene, dataset, || ControlFlow::Continue(()))?;
     summary.motion = motion;
@@ -208,6 +209,9 @@ fn describe(summary: &TrainingSummary, scene: &std::path::Path) {
         summary.seconds,
         summary.steps_per_second,
     );
+    if summary.left_out > 0 {
+        eprintln!("{} more were trained and are too faint to be drawn: left out", summary.left_out);
+    }
     if let Some(rest) = summary.rest.filter(|rest| rest.spared > 0) {
         eprintln!(
             "training spared {:.0} % of the network's evaluations: {} splats rested at the end",

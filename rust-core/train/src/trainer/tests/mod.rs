@@ -104,6 +104,27 @@ fn a_run_takes_its_steps_grows_and_reports_a_falling_loss() {
 }
 
 #[test]
+fn splats_that_no_pixel_can_show_stay_out_of_the_scene_and_are_counted() {
+    let place = Workplace::new();
+    let mut trainer =
+        place.start(TrainingConfig { densification: None, ..config(20) }, Mosaic::default());
+    finish(&mut trainer);
+    let logits = &mut trainer.backend().state.splats.opacity_logits;
+    logits.iter_mut().skip(1).step_by(4).for_each(|logit| *logit = -5.6);
+    logits[0] = -5.5;
+    let trained = trainer.backend().state.splats.clone();
+    let scene = trainer.scene().unwrap();
+    // 1/255 is a logit of −5.537.
+    let kept: Vec<u32> = (0..40).filter(|i| i % 4 != 1).collect();
+    assert_eq!(scene.splats.positions, trained.gather(&kept).positions);
+    let mut summary = trainer.summary();
+    summary.count(&scene);
+    assert_eq!((summary.splats, summary.left_out), (30, 10));
+    trainer.backend().state.splats.opacity_logits.fill(-9.0);
+    assert_eq!(trainer.scene().unwrap().len(), 40, "a scene of nothing helps nobody");
+}
+
+#[test]
 fn held_out_photographs_are_never_decoded() {
     let place = Workplace::new();
     for index in place.dataset.test_views().collect::<Vec<_>>() {
