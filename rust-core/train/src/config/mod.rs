@@ -133,7 +133,7 @@ pub struct BudgetSearch {
     pub thinning: bool,
     /// Steps of a trial, as a share of the run.
     pub trial: f64,
-    /// Every how many-th training view validates until the search has ended.
+    /// Every how many-th training view is set aside to judge the trials, until nothing is added any more.
     pub validation: u32,
     /// Nothing is tried that describes the scene with more numbers than this; `None` tries whatever
     /// `densification.max_splats` allows.

@@ -29,7 +29,7 @@ pub enum Event {
     },
     /// The search for the budget tried something.
     Trial(Trial),
-    /// The search for the budget has ended: from here on all training views are trained on.
+    /// The search for the budget has ended.
     SearchEnded {
         /// Steps taken.
         step: u32,

@@ -97,9 +97,8 @@ impl<B: TrainingBackend> Trainer<B> {
         // Work that was undone was work.
         let seconds = self.progress.seconds.max(checkpoint.progress.seconds);
         self.progress = Progress { seconds, ..checkpoint.progress };
-        let is_searching =
-            self.progress.search.as_ref().is_some_and(|search| search.ended_at.is_none());
-        self.views.set_searching(is_searching);
+        let search = self.progress.search.as_ref();
+        self.views.set_validation_aside(search.is_some_and(Search::sets_views_aside));
         Ok(())
     }
 

@@ -12,15 +12,16 @@
 //! First the set grows, in a stride twice as long where growth brought far more than it had to, until
 //! it was refused twice in a row, or four times where the scene moves. There a branch takes its stride
 //! over the first half of its trial, by a little in every densification step, as a run without a search
-//! grows.
+//! grows. Then come bands; growth leaves time for one, or two where the scene moves.
 //!
-//! Then come bands. And growth duplicates what is opaque, not what will be good for something: in the
-//! last trials that there is time for, those splats leave that the image would miss least
+//! Growth duplicates what is opaque, not what will be good for something: in the last two trials that there
+//! is time for, those splats leave that the image would miss least
 //! ([`RemovalCosts`](crate::densify::RemovalCosts)), as many as the same price says, until hardly any
-//! are to go or their leaving is refused. Not before: what a copy is good for shows long after it was
-//! made, and a set that is thinned as soon as it has grown loses what it would have become
-//! (docs/negative-results.md). Bands that the whole set had no room for are tried on the thinned one.
-//! When nothing is left to try, the search ends and the validation views are trained on.
+//! are to go or their leaving is refused. Not before: a price in dB is one of the error that there is, and
+//! what a copy is good for shows long after it was made (docs/negative-results.md).
+//!
+//! When neither splats nor bands are to be added any more, the validation views are trained on, too. They
+//! go on to judge the thinning: a set that only gets smaller does not learn them by heart.
 //!
 //! Nothing is tried that takes more numbers than [`BudgetSearch::most_numbers`], for splats and bands
 //! alike: photographs say only so much, and what is tried is what the memory has to hold.
@@ -43,10 +44,12 @@ const REFUSALS_OF_GROWTH: usize = 2;
 const REFUSALS_IN_MOTION: usize = 4;
 /// Growth that brought this many times what it had to is tried in a stride twice as long.
 const GENEROUS: f64 = 2.0;
-/// Trials that growth leaves time for, in which the set is thinned.
-const TRIALS_AFTER_GROWTH: u32 = 2;
-/// The same in a scene that moves, where growth may try until then.
-const TRIALS_AFTER_GROWTH_IN_MOTION: u32 = 4;
+/// The last trials that there is time for: in them the set is thinned.
+const THINNING_TRIALS: u32 = 2;
+/// Trials that growth leaves time for: a band, and thinning.
+const TRIALS_AFTER_GROWTH: u32 = 1 + THINNING_TRIALS;
+/// The same in a scene that moves: two bands, and thinning.
+const TRIALS_AFTER_GROWTH_IN_MOTION: u32 = 2 + THINNING_TRIALS;
 
 /// What a trial changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -104,6 +107,9 @@ pub struct Search {
     pub is_thin: bool,
     /// Every trial, in order.
     pub trials: Vec<Trial>,
+    /// The step from which on all training views are trained on, those that validate too.
+    #[serde(default)]
+    pub all_views_from: Option<u32>,
     /// The step at which the search ended.
     pub ended_at: Option<u32>,
 }
@@ -112,7 +118,14 @@ impl Search {
     /// Before the first trial.
     #[must_use]
     pub fn new(splats: u32) -> Self {
-        Self { splats, sh_degree: 0, is_thin: false, trials: Vec::new(), ended_at: None }
+        Self {
+            splats,
+            sh_degree: 0,
+            is_thin: false,
+            trials: Vec::new(),
+            all_views_from: None,
+            ended_at: None,
+        }
     }
 
     /// What the next trial changes, after `step` steps; `None` when nothing is left to try or no time
@@ -129,22 +142,29 @@ impl Search {
             Some(_) => (REFUSALS_IN_MOTION, TRIALS_AFTER_GROWTH_IN_MOTION),
             None => (REFUSALS_OF_GROWTH, TRIALS_AFTER_GROWTH),
         };
-        let is_early = config.has_time_for_trials(step, 1 + trials_after_growth);
-        if is_early && grown > self.splats && !self.has_grown(most_refusals) {
+        let has_time_to_grow = config.has_time_for_trials(step, 1 + trials_after_growth);
+        if has_time_to_grow && grown > self.splats && !self.has_grown(most_refusals) {
             return Some(Direction::Change(Proposal::Splats(grown)));
         }
         let has_to_thin = settings.thinning && !self.is_thin;
-        if has_to_thin && !is_early {
+        if has_to_thin && !config.has_time_for_trials(step, 1 + THINNING_TRIALS) {
             return Some(Direction::FewerSplats);
         }
         let is_refused = self.trials.iter().any(|trial| trial.is_band() && !trial.kept);
         let degree = self.sh_degree + 1;
-        let has_more_bands = degree <= config.sh_degree
+        let has_more_bands = self.sets_views_aside()
+            && degree <= config.sh_degree
             && settings.most_numbers.is_none_or(|most| numbers(self.splats, degree) <= most);
         if has_more_bands && !is_refused {
             return Some(Direction::Change(Proposal::ShDegree(degree)));
         }
         has_to_thin.then_some(Direction::Wait)
+    }
+
+    /// Whether the views that validate are not trained on: as long as splats or bands may be added.
+    #[must_use]
+    pub fn sets_views_aside(&self) -> bool {
+        self.all_views_from.is_none() && self.ended_at.is_none()
     }
 
     /// Whether growth is over: refused in its long stride and in its short one, or already followed
@@ -243,7 +263,7 @@ impl TrainingConfig {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::{DeformationTraining, Densification};
+    use crate::config::DeformationTraining;
 
     fn config() -> TrainingConfig {
         TrainingConfig::automatic(1400, 40_000)
@@ -271,8 +291,12 @@ mod tests {
 
     fn run_with(config: &TrainingConfig, pays: impl Fn(&Search, Proposal) -> bool) -> Search {
         let mut search = Search::new(10_000);
-        let mut step = config.trial_steps();
+        let undisturbed = config.deformation.map_or(1, |motion| motion.undisturbed);
+        let mut step = undisturbed.next_multiple_of(config.trial_steps());
         while let Some(direction) = search.next(config, step) {
+            if !matches!(direction, Direction::Change(_)) {
+                search.all_views_from.get_or_insert(step);
+            }
             let proposal = match direction {
                 Direction::Change(proposal) => Some(proposal),
                 Direction::FewerSplats if search.splats / 2 >= 6_000 => {
@@ -301,12 +325,20 @@ mod tests {
     }
 
     #[test]
-    fn growth_is_tried_four_times_in_a_row_where_the_scene_moves() {
-        let mut config = config();
-        config.deformation = Some(DeformationTraining::default());
-        let search = run_with(&config, |_, _| false);
-        let growths = search.trials.iter().take_while(|trial| trial.is_growth()).count();
-        assert_eq!((growths, search.trials.len()), (4, 5));
+    fn where_the_scene_moves_growth_is_tried_four_times_and_leaves_time_for_two_bands() {
+        let motion = DeformationTraining { undisturbed: 210, ..DeformationTraining::default() };
+        let config = TrainingConfig { deformation: Some(motion), ..config() };
+        let tried = |pays: bool| -> Vec<(u32, bool, bool)> {
+            let search = run_with(&config, |_, _| pays);
+            let what = |trial: &Trial| (trial.step, trial.is_growth(), trial.is_band());
+            search.trials.iter().map(what).collect()
+        };
+        let growths = [300, 400, 500, 600].map(|step| (step, true, false));
+        // 40 000 splats are the most.
+        let bands = [600, 700, 800].map(|step| (step, false, true));
+        let thinnings = [900, 1_000].map(|step| (step, false, false));
+        assert_eq!(tried(true), [&growths[..3], &bands, &thinnings].concat());
+        assert_eq!(tried(false), [&growths[..], &bands[1..2]].concat());
     }
 
     #[test]
@@ -323,12 +355,16 @@ mod tests {
 
     #[test]
     fn thinning_waits_for_the_last_two_trials() {
-        // Trials of 100 steps; the last one may begin at 1 067.
-        for pays in [true, false] {
-            let search = run(|_, proposal| pays && proposal != Proposal::ShDegree(1));
+        // The last one may begin at step 1 067. Growth ends at once, or has ended with 40 000 splats.
+        for grows in [true, false] {
+            let search = run(|search, proposal| match proposal {
+                Proposal::Splats(splats) => grows && splats > search.splats,
+                Proposal::ShDegree(_) => false,
+            });
             let thinnings = search.trials.iter().filter(|trial| trial.is_thinning());
             let steps: Vec<u32> = thinnings.map(|trial| trial.step).collect();
-            assert_eq!(steps, if pays { &[900, 1_000][..] } else { &[] });
+            assert_eq!(steps, if grows { &[900][..] } else { &[] }, "10 000 are thin");
+            assert_eq!(search.all_views_from, Some(if grows { 500 } else { 400 }));
         }
     }
 
@@ -350,15 +386,12 @@ mod tests {
     fn nothing_is_tried_that_takes_more_numbers_than_allowed() {
         // As many as 30 000 splats have without bands.
         let allowed = BudgetSearch { most_numbers: Some(420_000), ..BudgetSearch::default() };
-        let mut config = TrainingConfig { search: Some(allowed), ..config() };
+        let config = TrainingConfig { search: Some(allowed), ..config() };
         let search = run_with(&config, |_, _| true);
         let tried: Vec<Proposal> = search.trials.iter().map(|trial| trial.proposal).collect();
-        // No room for bands before the set is thin, and no time for them then.
+        // There is no room for bands before the set is thin, and then all views are trained on.
         assert_eq!(tried, [14_000, 27_440, 30_000, 15_000, 7_500].map(Proposal::Splats));
-        // A set that is thin at once has the time: 11 000 splats of degree 1 have 253 000 numbers, of
-        // degree 2 418 000, of degree 3 649 000.
-        config.densification =
-            config.densification.map(|set| Densification { max_splats: 11_000, ..set });
+        // 10 000 splats of degree 2 have 380 000 numbers, of degree 3 590 000.
         let search = run_with(&config, |_, proposal| matches!(proposal, Proposal::ShDegree(_)));
         assert_eq!((search.splats, search.sh_degree), (10_000, 2));
         let none = BudgetSearch { most_numbers: Some(0), ..BudgetSearch::default() };
@@ -387,13 +420,15 @@ mod tests {
     }
 
     #[test]
-    fn the_last_trial_ends_before_growth_does_and_growth_leaves_time_for_two_more() {
+    fn the_last_trial_ends_before_growth_has_to_stop_and_growth_leaves_time_for_three_more() {
         let config = config();
         assert_eq!(config.trial_steps(), 100);
-        // Growth stops after five sixths, 1167 of 1400 steps.
+        // The set may grow in the first five sixths, 1167 of 1400 steps.
         let search = Search::new(10_000);
         let next = |step| search.next(&config, step);
-        assert!(matches!(next(867), Some(Direction::Change(Proposal::Splats(_)))));
+        let band = Some(Direction::Change(Proposal::ShDegree(1)));
+        assert!(matches!(next(767), Some(Direction::Change(Proposal::Splats(_)))));
+        assert_eq!((next(768), next(867)), (band, band));
         assert_eq!((next(868), next(1067)), (Some(Direction::FewerSplats), next(868)));
         assert_eq!(next(1068), None);
     }

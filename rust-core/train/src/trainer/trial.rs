@@ -46,37 +46,54 @@ impl<B: TrainingBackend> Trainer<B> {
         &mut self,
         observer: &mut dyn FnMut(Event),
     ) -> Result<(), TrainError> {
-        let Some(search) = &self.progress.search else { return Ok(()) };
-        let trial_steps = self.config.trial_steps();
-        if search.ended_at.is_some() || self.step == 0 || !self.step.is_multiple_of(trial_steps) {
+        // What steps look at may change here: reports that are on their way are of the views before.
+        if !self.is_trial_due() || !self.settle(observer)? {
             return Ok(());
         }
-        if self.config.deformation.is_some_and(|motion| self.step < motion.undisturbed) {
-            return Ok(());
-        }
-        let mut kept = None;
-        let proposal = match search.next(&self.config, self.step) {
-            Some(Direction::Change(proposal)) => Some(proposal),
-            Some(Direction::FewerSplats) => {
-                kept = self.worth_keeping()?;
-                let Some(kept) = &kept else { return self.leave_thinned(observer) };
-                Some(Proposal::Splats(kept.len() as u32))
+        let proposed = match self.next_direction() {
+            Some(Direction::Change(proposal)) => Some((proposal, None)),
+            Some(Direction::FewerSplats) => match self.worth_keeping()? {
+                Some(kept) => Some((Proposal::Splats(kept.len() as u32), Some(kept))),
+                None => return self.leave_thinned(observer),
+            },
+            Some(Direction::Wait) => None,
+            None => {
+                self.end_search(observer);
+                None
             }
-            Some(Direction::Wait) => return Ok(()),
-            None => None,
         };
-        if proposal.is_none() {
-            self.end_search(observer);
-        }
+        // A pause is taken up by a run whose good state has made the same choices.
         if !self.make_good(observer)? {
             return Ok(());
         }
-        let end = self.step + trial_steps;
-        self.trial = proposal.map(|proposal| {
+        let end = self.step + self.config.trial_steps();
+        self.trial = proposed.map(|(proposal, kept)| {
             let growth = self.growth(proposal);
             RunningTrial { proposal, end, kept, growth, without: None }
         });
         Ok(())
+    }
+
+    fn is_trial_due(&self) -> bool {
+        let is_searching =
+            self.progress.search.as_ref().is_some_and(|search| search.ended_at.is_none());
+        let undisturbed = self.config.deformation.map_or(0, |motion| motion.undisturbed);
+        is_searching
+            && self.step > 0
+            && self.step.is_multiple_of(self.config.trial_steps())
+            && self.step >= undisturbed
+    }
+
+    /// Where the search goes from here. When nothing is to be added any more, all views are trained on from
+    /// here on.
+    fn next_direction(&mut self) -> Option<Direction> {
+        let search = self.progress.search.as_mut()?;
+        let direction = search.next(&self.config, self.step);
+        if !matches!(direction, Some(Direction::Change(_))) && search.sets_views_aside() {
+            search.all_views_from = Some(self.step);
+            self.views.set_validation_aside(false);
+        }
+        direction
     }
 
     /// How a trial that begins here comes to the splats it proposes. One that thins has left some
@@ -102,7 +119,6 @@ impl<B: TrainingBackend> Trainer<B> {
             let (splats, sh_degree) = (search.splats, search.sh_degree);
             observer(Event::SearchEnded { step, splats, sh_degree });
         }
-        self.views.set_searching(false);
     }
 
     /// Goes from one branch to the other, or decides, where the present branch is at its end.
@@ -116,7 +132,8 @@ impl<B: TrainingBackend> Trainer<B> {
         if !self.settle(observer)? {
             return Ok(());
         }
-        let psnr = self.validation_psnr()?;
+        let validation = self.views.validation().to_vec();
+        let psnr = self.mean_psnr(&validation)?;
         let Some(mut trial) = self.trial.take() else { return Ok(()) };
         match trial.without.take() {
             None => {
@@ -185,18 +202,18 @@ impl<B: TrainingBackend> Trainer<B> {
             let by_logits = self.backend.opacity_gradient(&view, self.sh_degree(), &signs)?;
             costs.add(&signs, &logits, &by_logits);
         }
-        Ok(costs.worth_keeping(self.validation_psnr()?, settings.least_gain))
+        let probed = &shown[..shown.len().min(PROBES as usize)];
+        Ok(costs.worth_keeping(self.mean_psnr(probed)?, settings.least_gain))
     }
 
-    /// Mean PSNR of the views that were set aside, dB.
-    fn validation_psnr(&mut self) -> Result<f64, TrainError> {
+    /// Mean PSNR of some training views, dB.
+    fn mean_psnr(&mut self, ids: &[u32]) -> Result<f64, TrainError> {
         let background = match self.config.background {
             Background::Fixed(color) => color,
             Background::Random => [1.0; 3],
         };
-        let ids = self.views.validation().to_vec();
         let mut sum = 0.0;
-        for &id in &ids {
+        for &id in ids {
             let target = self.photographs.target(id)?;
             let view = self.views.view(id).clone();
             let frame = self.render(&view.camera, view.time)?;

@@ -17,7 +17,7 @@ pub(super) struct Views {
     all: Vec<TrainingView>,
     /// Index in the dataset, by view.
     dataset_indices: Vec<usize>,
-    /// Views that validate while a search goes on.
+    /// Views that judge the trials of a search.
     validation: Vec<u32>,
     /// Views that steps look at.
     shown: Vec<u32>,
@@ -52,9 +52,9 @@ impl Views {
     }
 
     /// Sets the validation views aside, or shows them again.
-    pub(super) fn set_searching(&mut self, searching: bool) {
+    pub(super) fn set_validation_aside(&mut self, aside: bool) {
         let all = 0..self.all.len() as u32;
-        self.shown = all.filter(|id| !(searching && self.validation.contains(id))).collect();
+        self.shown = all.filter(|id| !(aside && self.validation.contains(id))).collect();
         self.order = ViewOrder::new(self.seed, self.shown.len() as u32);
     }
 

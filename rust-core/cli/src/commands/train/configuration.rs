@@ -25,7 +25,7 @@ pub(crate) struct TrainingArguments {
     #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = parse_budget)]
     max_splats: SplatBudget,
     /// With `--max-splats auto`: what a doubling of the scene's numbers has to bring, in dB of PSNR on
-    /// the training views that are set aside.
+    /// the training views that judge it.
     #[arg(long, value_name = "DB", conflicts_with = "fixed")]
     least_gain: Option<f64>,
     /// Train the initial splats and no others: no growth, no relocation, no noise.

@@ -1,9 +1,18 @@
 //! Killed and paused runs end as the uninterrupted one does.
 
-use trapeze_scene::Scene;
-
 use super::mosaic::{Failure, Failures};
 use super::*;
+use crate::TrainingState;
+use crate::backend::TrainingBackend;
+use crate::checkpoint::Progress;
+use crate::config::BudgetSearch;
+
+/// All that a run ends with but its seconds.
+fn ending(trainer: &mut Trainer<Mosaic>) -> (TrainingState, Progress) {
+    finish(trainer);
+    let progress = Progress { seconds: 0.0, ..trainer.progress().clone() };
+    (trainer.backend().state().unwrap(), progress)
+}
 
 fn failing(at: Option<u32>) -> Mosaic {
     let failures: Failures = Failures::default();
@@ -13,16 +22,19 @@ fn failing(at: Option<u32>) -> Mosaic {
     Mosaic { failures, ..Mosaic::default() }
 }
 
-fn uninterrupted(config: &TrainingConfig, fault: Option<u32>) -> Scene {
+fn uninterrupted(config: &TrainingConfig, fault: Option<u32>) -> (TrainingState, Progress) {
     let place = Workplace::new();
-    let mut trainer = place.start(config.clone(), failing(fault));
-    finish(&mut trainer);
-    trainer.scene().unwrap()
+    ending(&mut place.start(config.clone(), failing(fault)))
 }
 
 /// The same run, given up at each of `stops` (steps of work, not of progress) and taken up again
 /// by another trainer; saved before where `save` says so.
-fn interrupted(config: &TrainingConfig, fault: Option<u32>, stops: &[u32], save: bool) -> Scene {
+fn interrupted(
+    config: &TrainingConfig,
+    fault: Option<u32>,
+    stops: &[u32],
+    save: bool,
+) -> (TrainingState, Progress) {
     let place = Workplace::new();
     let mut trainer = place.start(config.clone(), failing(fault));
     for &stop in stops {
@@ -32,8 +44,7 @@ fn interrupted(config: &TrainingConfig, fault: Option<u32>, stops: &[u32], save:
         }
         trainer = place.resume(config, failing(fault));
     }
-    finish(&mut trainer);
-    trainer.scene().unwrap()
+    ending(&mut trainer)
 }
 
 #[test]
@@ -86,6 +97,26 @@ fn a_search_ends_bit_identical_whenever_it_is_interrupted() {
             }
         }
     }
+}
+
+#[test]
+fn a_run_that_waits_to_be_thinned_is_paused_where_it_is_and_ends_bit_identical() {
+    let mut config = super::searches::searching(560);
+    // Nothing may be added: from the first trial that is due on, at step 40, the search waits.
+    let search = BudgetSearch { most_numbers: Some(0), ..config.search.unwrap() };
+    config.search = Some(search);
+    let expected = uninterrupted(&config, None);
+    assert_eq!(expected.1.search.as_ref().unwrap().all_views_from, Some(40));
+    for save in [false, true] {
+        for stops in [&[39][..], &[40], &[41, 30], &[57, 100]] {
+            assert_eq!(interrupted(&config, None, stops, save), expected, "{save} {stops:?}");
+        }
+    }
+    let place = Workplace::new();
+    let mut trainer = place.start(config.clone(), Mosaic::default());
+    trainer.advance(57, &mut |_| ()).unwrap();
+    trainer.save(&mut |_| ()).unwrap();
+    assert_eq!(place.resume(&config, Mosaic::default()).step(), 57);
 }
 
 #[test]

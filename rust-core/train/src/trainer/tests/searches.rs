@@ -130,19 +130,27 @@ fn a_search_without_a_folder_finds_the_same() {
 }
 
 #[test]
-fn validation_views_are_trained_on_only_after_the_search() {
+fn validation_views_are_trained_on_only_when_nothing_is_to_be_added_any_more() {
     let place = Workplace::new();
     let mut trainer = place.start(searching(560), Mosaic::default());
     // Of 15 training views with every eighth from the fifth: 4 and 12.
     let validation = [4, 12];
-    while trainer.progress().search.as_ref().unwrap().ended_at.is_none() {
+    let search = |trainer: &Trainer<Mosaic>| trainer.progress().search.clone().unwrap();
+    while search(&trainer).all_views_from.is_none() {
         assert!(!trainer.backend().shown.iter().any(|id| validation.contains(id)));
         trainer.backend().shown.clear();
         trainer.advance(1, &mut |_| ()).unwrap();
     }
+    let grown = search(&trainer).splats;
     finish(&mut trainer);
     let shown = &trainer.backend().shown;
     assert!(validation.iter().all(|id| shown.contains(id)));
+    let search = search(&trainer);
+    assert!(search.all_views_from < search.ended_at && search.splats <= grown);
+    let from = search.all_views_from.unwrap();
+    let thins = |trial: &Trial| matches!(trial.proposal, Proposal::Splats(n) if n < trial.splats);
+    let mut later = search.trials.iter().filter(|trial| trial.step >= from).peekable();
+    assert!(later.peek().is_some() && later.all(thins), "{search:?}");
 }
 
 #[test]
