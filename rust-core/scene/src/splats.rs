@@ -106,10 +106,11 @@ impl Splats {
     }
 
     /// The splats that can be drawn, ascending: α is at most the opacity, and below 1/255 it is skipped in
-    /// every pixel. What rounding could lift to 1/255 is among them.
+    /// every pixel. What rounding could lift to 1/255 is among them: renderers compare log₂ of the opacity
+    /// in single precision, whose last place at 8 is 7e-7 of the opacity.
     #[must_use]
     pub fn drawable(&self) -> Vec<u32> {
-        const LEAST_OPACITY: f64 = (1.0 - 1e-6) / 255.0;
+        const LEAST_OPACITY: f64 = (1.0 - 1e-5) / 255.0;
         let logits = (0..).zip(&self.opacity_logits);
         logits
             .filter(|&(_, &logit)| sigmoid(f64::from(logit)) >= LEAST_OPACITY)

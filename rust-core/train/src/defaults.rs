@@ -97,8 +97,7 @@ pub fn deformation_for_training(
 ///
 /// Gradients change their size within few steps there, those of the network's first layers a
 /// thousandfold when these begin to take part. As long as the second moment lags behind, Adam's steps are
-/// up to (1 − β₁)/√(1 − β₂) times the rate: three times with the usual β₂, which ruined three runs of
-/// eight; once with this one.
+/// up to (1 − β₁)/√(1 − β₂) times the rate: three times with the usual β₂, once with this one.
 ///
 /// What moves is in each place for a short time only. Without time, every splat there turns
 /// transparent, and relocation takes it away; with nothing there the network has nothing to move, and

@@ -18,21 +18,21 @@ pub enum NetworkProducts {
 }
 
 impl NetworkProducts {
-    /// Largest coordinate of most splats of a scene that split products take, world units. There the
-    /// rounding of the smallest weights, 2⁻³¹, is 2e-6 of a feature.
+    /// Largest coordinate of a splat that split products are made for, world units. There the rounding of
+    /// the smallest weights, 2⁻³¹, is 2e-6 of a feature.
     pub const FARTHEST: f32 = 4096.0;
 
-    /// These, or single ones where the device has no others, computes them wrong, or half of the splats
-    /// are too far away: a few that have gone astray change nothing, so a run that is resumed goes on as
-    /// it began. The first call for split ones on a device waits for a probe of them.
+    /// These, or single ones where the device has no others, computes them wrong, or fewer than a quarter of
+    /// the splats are near enough: what training scatters changes nothing then, and a run that is resumed
+    /// goes on as it began. The first call for split ones on a device waits for a probe of them.
     #[must_use]
     pub fn suited(self, gpu: &Gpu, positions: &[[f32; 3]]) -> Self {
-        let is_far = |position: &&[f32; 3]| {
-            position.iter().any(|x| x.is_finite() && x.abs() > Self::FARTHEST)
+        let is_near = |position: &&[f32; 3]| {
+            position.iter().all(|x| !x.is_finite() || x.abs() <= Self::FARTHEST)
         };
         let is_suited = self == Self::Split
             && gpu.has_matrices()
-            && 2 * positions.iter().filter(is_far).count() <= positions.len()
+            && 4 * positions.iter().filter(is_near).count() >= positions.len()
             && gpu.kernels().split_products_agree(|| agree(gpu));
         if is_suited { Self::Split } else { Self::Single }
     }

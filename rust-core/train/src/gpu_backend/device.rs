@@ -128,6 +128,7 @@ impl Run {
         }
         let (counts, reports) = (self.renderer.counts(), &reports.buffer);
         let products = options.network_products.suited(gpu, &state.splats.positions);
+        tracing::info!("products of the network: {products:?}");
         let place = Place {
             capacity,
             activation_budget: options.activation_budget,

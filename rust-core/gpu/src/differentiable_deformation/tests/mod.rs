@@ -315,9 +315,10 @@ fn split_products_are_not_for_scenes_beyond_the_range_of_halves() {
     let at = |x: f32| NetworkProducts::Split.suited(&gpu, &[[0.0, -x, 1.0]]);
     assert_eq!(at(NetworkProducts::FARTHEST), near);
     assert_eq!(at(NetworkProducts::FARTHEST * 1.01), NetworkProducts::Single);
-    // One of two has gone astray.
-    let one_astray = [[0.0; 3], [0.0, 1e9, f32::NAN]];
-    assert_eq!(NetworkProducts::Split.suited(&gpu, &one_astray), near);
+    // Three of four have gone astray.
+    let astray = [0.0, 1e9, f32::NAN];
+    let one_near = [[0.0; 3], astray, astray, astray];
+    assert_eq!(NetworkProducts::Split.suited(&gpu, &one_near), near);
     // These are not drawn.
     assert_eq!(at(f32::NAN), near);
     assert_eq!(at(f32::INFINITY), near);
