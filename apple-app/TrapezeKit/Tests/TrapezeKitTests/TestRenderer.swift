@@ -157,7 +157,7 @@ actor TestTrainer: TrainEngine {
   nonisolated var step: Int { counter.current }
   nonisolated var photographs: [Photograph] {
     let camera = OrbitPose().camera(in: Viewport(width: 4, height: 4))
-    return [0, 0.5].map { Photograph(camera: camera, time: $0) }
+    return [0, 0.5, 1].map { Photograph(camera: camera, time: $0) }
   }
 
   nonisolated func run() -> AsyncThrowingStream<TrainEvent, any Error> {

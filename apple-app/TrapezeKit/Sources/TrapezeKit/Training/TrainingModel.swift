@@ -157,7 +157,8 @@ public final class TrainingModel {
   /// Waits for what is going on.
   public func settle() async {
     await work?.value
-    await drawing?.value
+    // A picture may be followed by another.
+    while let drawing { await drawing.value }
   }
 
   private func follow(_ trainer: any TrainEngine) async {
