@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::search::Trial;
+use super::proposal::Trial;
 
 /// Something that a user may want to see. None of it steers the run.
 #[derive(Clone, Debug, PartialEq)]

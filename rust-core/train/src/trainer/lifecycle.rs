@@ -9,7 +9,7 @@ use trapeze_formats::dataset::Dataset;
 use super::anchor::Anchor;
 use super::initial::initial_splats;
 use super::photographs::Photographs;
-use super::search::Proposal;
+use super::proposal::Proposal;
 use super::trial::RunningTrial;
 use super::views::Views;
 use super::{Event, Figures, Search, TrainError, Trainer, TrainerOptions, TrainingMemory};

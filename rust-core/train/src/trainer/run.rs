@@ -5,7 +5,7 @@ use std::time::Instant;
 use trapeze_scene::ShDegree;
 
 use super::health::Fault;
-use super::search::Proposal;
+use super::proposal::Proposal;
 use super::{Event, Report, TrainError, Trainer};
 use crate::backend::{BackendError, REPORT_LAG, TrainingBackend};
 use crate::config::Background;

@@ -32,6 +32,7 @@
 use serde::{Deserialize, Serialize};
 use trapeze_scene::ShDegree;
 
+use super::proposal::{Proposal, Trial};
 use crate::config::{BudgetSearch, TrainingConfig};
 use crate::densify::grown_count;
 use crate::numbers_of_splat;
@@ -51,16 +52,6 @@ const TRIALS_AFTER_GROWTH: u32 = 1 + THINNING_TRIALS;
 /// The same in a scene that moves: two bands, and thinning.
 const TRIALS_AFTER_GROWTH_IN_MOTION: u32 = 2 + THINNING_TRIALS;
 
-/// What a trial changes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Proposal {
-    /// To this many splats.
-    Splats(u32),
-    /// To this SH degree.
-    ShDegree(u32),
-}
-
 /// Where a search goes next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Direction {
@@ -70,29 +61,6 @@ pub enum Direction {
     FewerSplats,
     /// Nowhere yet: the set grows no more, and it is too early to thin it.
     Wait,
-}
-
-/// A trial and its evidence.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Trial {
-    /// The step from which both branches went.
-    pub step: u32,
-    /// Steps of each branch.
-    pub steps: u32,
-    /// Splats at the start.
-    pub splats: u32,
-    /// SH degree at the start.
-    pub sh_degree: u32,
-    /// What was tried.
-    pub proposal: Proposal,
-    /// PSNR of the validation views, dB, of the branch that stayed as it was.
-    pub psnr_without: f64,
-    /// PSNR of the validation views, dB, of the branch with the change.
-    pub psnr_with: f64,
-    /// What the change had to bring, dB.
-    pub required_gain: f64,
-    /// Whether it was kept.
-    pub kept: bool,
 }
 
 /// The choices so far. Part of the checkpoint.
@@ -208,26 +176,6 @@ impl Search {
         }
         self.is_thin |= trial.is_thinning() && !trial.kept;
         self.trials.push(trial);
-    }
-}
-
-impl Trial {
-    /// What the change brought, dB.
-    #[must_use]
-    pub fn gain(&self) -> f64 {
-        self.psnr_with - self.psnr_without
-    }
-
-    fn is_growth(&self) -> bool {
-        matches!(self.proposal, Proposal::Splats(splats) if splats > self.splats)
-    }
-
-    fn is_thinning(&self) -> bool {
-        matches!(self.proposal, Proposal::Splats(splats) if splats < self.splats)
-    }
-
-    fn is_band(&self) -> bool {
-        matches!(self.proposal, Proposal::ShDegree(_))
     }
 }
 

@@ -2,7 +2,8 @@
 
 use super::branch::Branch;
 use super::growth::Growth;
-use super::search::{Direction, Proposal, Trial};
+use super::proposal::{Proposal, Trial};
+use super::search::Direction;
 use super::{Event, TrainError, Trainer};
 use crate::backend::TrainingBackend;
 use crate::config::Background;
