@@ -16,14 +16,14 @@ pub(super) struct Growth {
 
 impl Growth {
     /// From `from` splats to `to`, in equal ratios, over the densification steps in the first half of
-    /// the trial that begins at step `begin`; at once at its beginning, where the search is not gradual,
-    /// these are fewer than two, or nothing grows.
+    /// the trial that begins at step `begin`; at once at its beginning, where the search is not gradual
+    /// or these are fewer than two.
     pub(super) fn new(config: &TrainingConfig, begin: u32, (from, to): (u32, u32)) -> Self {
         let middle = begin.saturating_add(config.trial_steps().div_ceil(2));
         let is_due = |step: &u32| config.densification.is_some_and(|set| set.is_due(*step));
         let mut steps: Vec<u32> = (begin..middle).filter(is_due).collect();
         let is_gradual = config.search.is_some_and(|search| search.gradual);
-        if !is_gradual || steps.len() < 2 || to <= from {
+        if !is_gradual || steps.len() < 2 {
             steps = vec![begin];
         }
         let changes = steps.len() as f64;
@@ -101,6 +101,5 @@ mod tests {
         for begin in [143, 572, 1_144] {
             assert_eq!(growth(2_000, begin, 14_000), [(begin, 14_000)]);
         }
-        assert_eq!(growth(7_000, 500, 10_000), [(500, 10_000)]);
     }
 }

@@ -14,11 +14,11 @@
 //! over the first half of its trial, by a little in every densification step, as a run without a search
 //! grows. Then come bands; growth leaves time for one, or two where the scene moves.
 //!
-//! Growth duplicates what is opaque, not what will be good for something: in the last two trials that there
-//! is time for, those splats leave that the image would miss least
-//! ([`RemovalCosts`](crate::densify::RemovalCosts)), as many as the same price says, until hardly any
-//! are to go or their leaving is refused. Not before: a price in dB is one of the error that there is, and
-//! what a copy is good for shows long after it was made (docs/negative-results.md).
+//! Growth duplicates what is opaque, not what will be good for something: in the last trial that leaves as
+//! much time again, those splats leave that the image would miss least
+//! ([`RemovalCosts`](crate::densify::RemovalCosts)), as many as the same price says, unless hardly any
+//! are to go. Not before: until growth has to stop, splats that are good for nothing are moved to where
+//! they are, and no trial is long enough to see what that is worth (docs/negative-results.md).
 //!
 //! When neither splats nor bands are to be added any more, the validation views are trained on, too. They
 //! go on to judge the thinning: a set that only gets smaller does not learn them by heart.
@@ -45,12 +45,11 @@ const REFUSALS_OF_GROWTH: usize = 2;
 const REFUSALS_IN_MOTION: usize = 4;
 /// Growth that brought this many times what it had to is tried in a stride twice as long.
 const GENEROUS: f64 = 2.0;
-/// The last trials that there is time for: in them the set is thinned.
-const THINNING_TRIALS: u32 = 2;
-/// Trials that growth leaves time for: a band, and thinning.
-const TRIALS_AFTER_GROWTH: u32 = 1 + THINNING_TRIALS;
-/// The same in a scene that moves: two bands, and thinning.
-const TRIALS_AFTER_GROWTH_IN_MOTION: u32 = 2 + THINNING_TRIALS;
+/// Trials that growth leaves time for before it has to stop: a band, and as long again for what grew last
+/// to be good for something.
+const TRIALS_AFTER_GROWTH: u32 = 3;
+/// The same in a scene that moves, which has time for two bands.
+const TRIALS_AFTER_GROWTH_IN_MOTION: u32 = 4;
 
 /// Where a search goes next.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,7 +58,7 @@ pub enum Direction {
     Change(Proposal),
     /// To fewer splats; how many depends on what they are worth.
     FewerSplats,
-    /// Nowhere yet: the set grows no more, and it is too early to thin it.
+    /// Nowhere yet: nothing is to be added any more, and it is too early to thin the set.
     Wait,
 }
 
@@ -100,33 +99,37 @@ impl Search {
     /// is left to try it in.
     #[must_use]
     pub fn next(&self, config: &TrainingConfig, step: u32) -> Option<Direction> {
-        let (settings, densification) = (config.search?, config.densification?);
-        if !config.has_time_for_trials(step, 1) {
-            return None;
+        let has_time_to_thin = |step| config.has_time_to_thin(step);
+        let is_to_be_thinned = config.search?.thinning && !self.is_thin && has_time_to_thin(step);
+        if is_to_be_thinned && !has_time_to_thin(step.saturating_add(config.trial_steps())) {
+            return Some(Direction::FewerSplats);
         }
+        let change = self.more_splats(config, step).or_else(|| self.more_bands(config, step));
+        change.map(Direction::Change).or(is_to_be_thinned.then_some(Direction::Wait))
+    }
+
+    fn more_splats(&self, config: &TrainingConfig, step: u32) -> Option<Proposal> {
+        let (settings, densification) = (config.search?, config.densification?);
         let most = settings.most_splats().min(densification.max_splats);
         let grown = self.grown(&settings, most);
         let (most_refusals, trials_after_growth) = match config.deformation {
             Some(_) => (REFUSALS_IN_MOTION, TRIALS_AFTER_GROWTH_IN_MOTION),
             None => (REFUSALS_OF_GROWTH, TRIALS_AFTER_GROWTH),
         };
-        let has_time_to_grow = config.has_time_for_trials(step, 1 + trials_after_growth);
-        if has_time_to_grow && grown > self.splats && !self.has_grown(most_refusals) {
-            return Some(Direction::Change(Proposal::Splats(grown)));
-        }
-        let has_to_thin = settings.thinning && !self.is_thin;
-        if has_to_thin && !config.has_time_for_trials(step, 1 + THINNING_TRIALS) {
-            return Some(Direction::FewerSplats);
-        }
-        let is_refused = self.trials.iter().any(|trial| trial.is_band() && !trial.kept);
+        let has_time = config.has_time_for_trials(step, 1 + trials_after_growth);
+        let is_due = has_time && grown > self.splats && !self.has_grown(most_refusals);
+        is_due.then_some(Proposal::Splats(grown))
+    }
+
+    fn more_bands(&self, config: &TrainingConfig, step: u32) -> Option<Proposal> {
+        let most_numbers = config.search?.most_numbers;
         let degree = self.sh_degree + 1;
-        let has_more_bands = self.sets_views_aside()
+        let is_due = self.sets_views_aside()
+            && config.has_time_for_trials(step, 1)
             && degree <= config.sh_degree
-            && settings.most_numbers.is_none_or(|most| numbers(self.splats, degree) <= most);
-        if has_more_bands && !is_refused {
-            return Some(Direction::Change(Proposal::ShDegree(degree)));
-        }
-        has_to_thin.then_some(Direction::Wait)
+            && most_numbers.is_none_or(|most| numbers(self.splats, degree) <= most)
+            && !self.trials.iter().any(|trial| trial.is_band() && !trial.kept);
+        is_due.then_some(Proposal::ShDegree(degree))
     }
 
     /// Whether the views that validate are not trained on: as long as splats or bands may be added.
@@ -206,6 +209,13 @@ impl TrainingConfig {
         let stop = self.densification.map_or(0, |densification| densification.stop);
         step.saturating_add(count.saturating_mul(self.trial_steps())) <= stop.min(self.steps)
     }
+
+    /// Whether a trial from `step` on leaves as much time again until the end of the run, in which
+    /// those that stay make up for those that left.
+    fn has_time_to_thin(&self, step: u32) -> bool {
+        self.densification.is_some()
+            && step.saturating_add(self.trial_steps().saturating_mul(2)) <= self.steps
+    }
 }
 
 #[cfg(test)]
@@ -284,26 +294,26 @@ mod tests {
         let growths = [300, 400, 500, 600].map(|step| (step, true, false));
         // 40 000 splats are the most.
         let bands = [600, 700, 800].map(|step| (step, false, true));
-        let thinnings = [900, 1_000].map(|step| (step, false, false));
-        assert_eq!(tried(true), [&growths[..3], &bands, &thinnings].concat());
+        let thinning = [(1_200, false, false)];
+        assert_eq!(tried(true), [&growths[..3], &bands, &thinning].concat());
         assert_eq!(tried(false), [&growths[..], &bands[1..2]].concat());
     }
 
     #[test]
     fn what_always_pays_grows_to_the_ceiling_gets_all_bands_and_is_thinned() {
         let search = run(|_, _| true);
-        assert_eq!((search.splats, search.sh_degree), (10_000, 3));
+        assert_eq!((search.splats, search.sh_degree), (20_000, 3));
         let tried: Vec<Proposal> = search.trials.iter().map(|trial| trial.proposal).collect();
         // Every trial brings far more than it has to: the second stride is the square of the first.
         let grown = [14_000, 27_440, 40_000].map(Proposal::Splats);
         let bands = [1, 2, 3].map(Proposal::ShDegree);
-        let thinned = [20_000, 10_000].map(Proposal::Splats);
+        let thinned = [Proposal::Splats(20_000)];
         assert_eq!(tried, [&grown[..], &bands, &thinned].concat());
     }
 
     #[test]
-    fn thinning_waits_for_the_last_two_trials() {
-        // The last one may begin at step 1 067. Growth ends at once, or has ended with 40 000 splats.
+    fn thinning_waits_for_the_last_trial_that_leaves_as_much_time_again() {
+        // Growth ends at once, or has ended with 40 000 splats.
         for grows in [true, false] {
             let search = run(|search, proposal| match proposal {
                 Proposal::Splats(splats) => grows && splats > search.splats,
@@ -311,7 +321,7 @@ mod tests {
             });
             let thinnings = search.trials.iter().filter(|trial| trial.is_thinning());
             let steps: Vec<u32> = thinnings.map(|trial| trial.step).collect();
-            assert_eq!(steps, if grows { &[900][..] } else { &[] }, "10 000 are thin");
+            assert_eq!(steps, if grows { &[1_200][..] } else { &[] }, "10 000 are thin");
             assert_eq!(search.all_views_from, Some(if grows { 500 } else { 400 }));
         }
     }
@@ -338,7 +348,7 @@ mod tests {
         let search = run_with(&config, |_, _| true);
         let tried: Vec<Proposal> = search.trials.iter().map(|trial| trial.proposal).collect();
         // There is no room for bands before the set is thin, and then all views are trained on.
-        assert_eq!(tried, [14_000, 27_440, 30_000, 15_000, 7_500].map(Proposal::Splats));
+        assert_eq!(tried, [14_000, 27_440, 30_000, 15_000].map(Proposal::Splats));
         // 10 000 splats of degree 2 have 380 000 numbers, of degree 3 590 000.
         let search = run_with(&config, |_, proposal| matches!(proposal, Proposal::ShDegree(_)));
         assert_eq!((search.splats, search.sh_degree), (10_000, 2));
@@ -368,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_trial_ends_before_growth_has_to_stop_and_growth_leaves_time_for_three_more() {
+    fn what_is_added_is_added_before_growth_has_to_stop_and_then_the_set_is_thinned() {
         let config = config();
         assert_eq!(config.trial_steps(), 100);
         // The set may grow in the first five sixths, 1167 of 1400 steps.
@@ -376,8 +386,19 @@ mod tests {
         let next = |step| search.next(&config, step);
         let band = Some(Direction::Change(Proposal::ShDegree(1)));
         assert!(matches!(next(767), Some(Direction::Change(Proposal::Splats(_)))));
-        assert_eq!((next(768), next(867)), (band, band));
-        assert_eq!((next(868), next(1067)), (Some(Direction::FewerSplats), next(868)));
-        assert_eq!(next(1068), None);
+        assert_eq!((next(768), next(1067)), (band, band));
+        assert_eq!((next(1068), next(1100)), (Some(Direction::Wait), Some(Direction::Wait)));
+        let thin = Some(Direction::FewerSplats);
+        assert_eq!((next(1101), next(1200), next(1201)), (thin, thin, None));
+    }
+
+    #[test]
+    fn where_trials_are_long_the_last_one_thins() {
+        // It begins at step 700, where there were also time for another band.
+        let search = BudgetSearch { trial: 0.25, ..BudgetSearch::default() };
+        let config = TrainingConfig { search: Some(search), ..config() };
+        let next = |step| Search::new(10_000).next(&config, step);
+        let band = Some(Direction::Change(Proposal::ShDegree(1)));
+        assert_eq!((next(350), next(700)), (band, Some(Direction::FewerSplats)));
     }
 }

@@ -97,12 +97,12 @@ impl<B: TrainingBackend> Trainer<B> {
         direction
     }
 
-    /// How a trial that begins here comes to the splats it proposes. One that thins has left some
-    /// behind before its first step, and grows by none.
+    /// How a trial that begins here comes to more splats, if it proposes that. One that thins has left
+    /// some behind before its first step.
     fn growth(&self, proposal: Proposal) -> Option<Growth> {
         let Proposal::Splats(splats) = proposal else { return None };
-        let present = self.backend.splat_count().min(splats);
-        Some(Growth::new(&self.config, self.step, (present, splats)))
+        let present = self.backend.splat_count();
+        (splats > present).then(|| Growth::new(&self.config, self.step, (present, splats)))
     }
 
     /// Goes on to what comes after thinning.
