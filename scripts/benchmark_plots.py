@@ -97,7 +97,8 @@ def budget_plot(dataset, points):
             ("seconds", lambda p: p["seconds"], lambda x: f"{x:.0f} s")]
     panels = []
     for left, (name, value, label) in zip((0, Panel.WIDTH), axes):
-        values = [value(point) for point in points]
+        shown = [point for point in points if name in point]
+        values = [value(point) for point in shown]
         first, last = min(values), max(values)
         panel = Panel(left, (first, last), (low, high))
         for tick in range(5):
@@ -105,7 +106,7 @@ def budget_plot(dataset, points):
             panel.tick_below(x, label(x))
             panel.tick_beside(y, f"{y:.2f}")
         panel.name(name)
-        for point in points:
+        for point in shown:
             color = "#1f77b4" if "budget" in point else "#d62728"
             panel.circle(value(point), point["test_psnr"], 4, color)
         panels.append(panel)
