@@ -32,7 +32,7 @@ pub(crate) struct Arguments {
     #[arg(long, default_value = "assets/search-model")]
     models: PathBuf,
     /// Steps of the training run.
-    #[arg(long, default_value_t = 600)]
+    #[arg(long, default_value_t = 3000)]
     steps: u32,
 }
 
@@ -136,9 +136,9 @@ fn train(arguments: &Arguments) -> Result<(), CliError> {
         "--preview",
         &steps,
         "--max-splats",
-        "6000",
+        "10000",
         "--random-splats",
-        "4000",
+        "6000",
         "--sh-degree",
         "1",
     ])
