@@ -86,7 +86,8 @@ impl Splats {
     }
 }
 
-fn is_finite(position: &[f32; 3]) -> bool {
+/// Whether a position is one that can be framed, searched or measured from.
+pub(crate) fn is_finite(position: &[f32; 3]) -> bool {
     position.iter().all(|c| c.is_finite())
 }
 

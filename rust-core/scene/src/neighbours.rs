@@ -6,6 +6,8 @@
 
 use rayon::prelude::*;
 
+use crate::bounds::is_finite;
+
 /// Points in a leaf, which are all looked at.
 const LEAF: usize = 16;
 
@@ -121,7 +123,7 @@ impl Tree {
     fn build(positions: &[[f32; 3]]) -> Self {
         let mut points: Vec<Point> = (0..)
             .zip(positions)
-            .filter(|(_, position)| position.iter().all(|c| c.is_finite()))
+            .filter(|(_, position)| is_finite(position))
             .map(|(index, &position)| Point { position, index })
             .collect();
         let mut splits = vec![Split::default(); points.len()];

@@ -1,6 +1,7 @@
 //! Removal of floaters: splats, or small groups of them, that hang far away from everything else.
 
 use crate::Scene;
+use crate::bounds::is_finite;
 use crate::neighbours::{NO_NEIGHBOUR, Neighbours};
 
 /// What counts as a floater.
@@ -40,11 +41,12 @@ pub fn without_floaters(scene: &Scene, rule: &FloaterRule) -> Vec<u32> {
     let sizes = group_sizes(&neighbours, positions.len(), |i, distance| {
         near(i) && f64::from(distance) <= threshold
     });
-    let finite = |i: usize| positions[i].iter().all(|c| c.is_finite());
     // Too few splats to say what is usual: nothing is isolated in a scene of one group.
     let smallest = rule.smallest_group.min(positions.len());
     (0..positions.len())
-        .filter(|&i| finite(i) && (positions.len() == 1 || near(i)) && sizes[i] >= smallest)
+        .filter(|&i| {
+            is_finite(&positions[i]) && (positions.len() == 1 || near(i)) && sizes[i] >= smallest
+        })
         .map(|i| i as u32)
         .collect()
 }

@@ -18,7 +18,7 @@
 //! much time again, those splats leave that the image would miss least
 //! ([`RemovalCosts`](crate::densify::RemovalCosts)), as many as the same price says, unless hardly any
 //! are to go. Not before: until growth has to stop, splats that are good for nothing are moved to where
-//! they are, and no trial is long enough to see what that is worth (docs/negative-results.md).
+//! more are needed, and no trial is long enough to see what that is worth (docs/negative-results.md).
 //!
 //! When neither splats nor bands are to be added any more, the validation views are trained on, too. They
 //! go on to judge the thinning: a set that only gets smaller does not learn them by heart.
@@ -99,9 +99,9 @@ impl Search {
     /// is left to try it in.
     #[must_use]
     pub fn next(&self, config: &TrainingConfig, step: u32) -> Option<Direction> {
-        let has_time_to_thin = |step| config.has_time_to_thin(step);
-        let is_to_be_thinned = config.search?.thinning && !self.is_thin && has_time_to_thin(step);
-        if is_to_be_thinned && !has_time_to_thin(step.saturating_add(config.trial_steps())) {
+        let is_to_be_thinned =
+            config.search?.thinning && !self.is_thin && config.has_time_to_thin(step);
+        if is_to_be_thinned && !config.has_time_to_thin(step.saturating_add(config.trial_steps())) {
             return Some(Direction::FewerSplats);
         }
         let change = self.more_splats(config, step).or_else(|| self.more_bands(config, step));
